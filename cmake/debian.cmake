@@ -37,7 +37,7 @@ This package has the headers, static libraries and CMake package.")
 # What exemplar-config.cmake looks for.
 string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
        libeigen3-dev libtbb-dev libfmt-dev nlohmann-json3-dev libpng-dev libturbojpeg0-dev libexpat1-dev libembree-dev libtinyobjloader-dev libtinygltf-dev
-       libdraco-dev libmeshoptimizer-dev libnlopt-dev libxxhash-dev libsqlite3-dev pkg-config libvulkan-dev libvulkan-volk-dev libspirv-cross-c-shared-dev)
+       libdraco-dev libmeshoptimizer-dev libnlopt-dev libxxhash-dev libsqlite3-dev pkg-config libvulkan-dev libspirv-cross-c-shared-dev)
 
 # Debian wants a changelog of the packages in a form of its own; it points to that of the project.
 string(TIMESTAMP exemplar_date "%a, %d %b %Y %H:%M:%S +0000" UTC)

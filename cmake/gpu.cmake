@@ -1,7 +1,6 @@
 # Everything that speaks Vulkan: the libraries of gpu/ and the shaders they embed.
 
 find_package(Vulkan REQUIRED)
-find_path(EXEMPLAR_VOLK_DIR NAMES volk.c PATH_SUFFIXES volk REQUIRED DOC "Folder of volk.h and volk.c")
 pkg_check_modules(SPIRV_CROSS REQUIRED IMPORTED_TARGET spirv-cross-c-shared)
 find_program(EXEMPLAR_GLSLANG glslangValidator REQUIRED)
 find_program(EXEMPLAR_SPIRV_VAL spirv-val REQUIRED)
@@ -48,9 +47,6 @@ endfunction()
 
 exemplar_library(runtime gpu/runtime exemplar_core Vulkan::Headers $<BUILD_INTERFACE:PkgConfig::SPIRV_CROSS>
                                      $<INSTALL_INTERFACE:$<LINK_ONLY:PkgConfig::SPIRV_CROSS>> PRIVATE PkgConfig::XXHASH ${CMAKE_DL_LIBS})
-target_sources(exemplar_runtime PRIVATE ${EXEMPLAR_VOLK_DIR}/volk.c)
-set_source_files_properties(${EXEMPLAR_VOLK_DIR}/volk.c PROPERTIES COMPILE_OPTIONS -w)
-target_include_directories(exemplar_runtime SYSTEM PUBLIC $<BUILD_INTERFACE:${EXEMPLAR_VOLK_DIR}>)
 exemplar_shaders(exemplar_runtime runtime)
 
 exemplar_library(gpu_learn gpu/learn exemplar_runtime exemplar_learn)
@@ -65,7 +61,7 @@ exemplar_shaders(exemplar_gpu_imaging imaging)
 exemplar_library(gpu_curvature gpu/curvature exemplar_runtime exemplar_animation exemplar_curvature)
 exemplar_shaders(exemplar_gpu_curvature curvature)
 
-# Windows are of the caller: nothing here knows GLFW. libimgui's Vulkan backend stays out, for volk has names it uses.
+# Windows are of the caller: nothing here knows GLFW. libimgui's Vulkan backend stays out: it would link the loader.
 pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
 exemplar_library(gpu_window gpu/window exemplar_gpu_imaging exemplar_runtime exemplar_imaging PkgConfig::IMGUI)
 exemplar_shaders(exemplar_gpu_window window)

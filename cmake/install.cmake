@@ -38,7 +38,7 @@ function(exemplar_install_part part)
   install(TARGETS ${ARGN} exemplar_${part} EXPORT exemplar_${part} COMPONENT development)
   install(EXPORT exemplar_${part} NAMESPACE exemplar:: FILE exemplar-${part}.cmake DESTINATION ${exemplar_package_dir} COMPONENT development)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${part} DESTINATION ${exemplar_include_dir} COMPONENT development
-          FILES_MATCHING PATTERN "*.h" PATTERN window EXCLUDE PATTERN report_page EXCLUDE)
+          FILES_MATCHING PATTERN "*.h" PATTERN functions.h EXCLUDE PATTERN window EXCLUDE PATTERN report_page EXCLUDE)
 endfunction()
 
 get_property(exemplar_host_libraries GLOBAL PROPERTY exemplar_libraries_of_host)

@@ -113,7 +113,8 @@ std::vector<DoubledAngle> GpuHatchingEvaluator::orientations(std::span<const Ori
     std::vector<DoubledAngle> directions(fields.rows);
     const Rules rules = rules_of(functions);
     if (rules.terms.empty() || fields.rows == 0) return directions;
-    const Buffer begins = Buffer::of<Word>(device_, rules.begin), terms = Buffer::of<RuleTerm>(device_, rules.terms);
+    const Buffer begins = uploaded<Word>(device_, stream_, rules.begin),
+                 terms = uploaded<RuleTerm>(device_, stream_, rules.terms);
     const std::size_t used = rules.fields.numbers.size(), tile = tile_rows(fields.rows, used * sizeof(DoubledAngle));
     reserve(device_, segments_, tile * sizeof(Word));
     reserve(device_, columns_, used * tile * sizeof(DoubledAngle));
@@ -146,7 +147,7 @@ std::vector<float> GpuHatchingEvaluator::property(const PropertyModel& model, st
     std::vector<PropertyTerm> terms = terms_of(model, used);
     std::vector<std::span<const float>> of_place(std::max<std::size_t>(used.numbers.size(), 1));
     for (std::size_t k = 0; k < terms.size(); ++k) of_place[terms[k].column] = columns[k];
-    const Buffer term_buffer = Buffer::of<PropertyTerm>(device_, terms);
+    const Buffer term_buffer = uploaded<PropertyTerm>(device_, stream_, terms);
     const std::size_t tile = tile_rows(base.rows, of_place.size() * sizeof(float)), column_bytes = tile * sizeof(float);
     reserve(device_, columns_, of_place.size() * column_bytes);
     reserve(device_, values_, column_bytes);

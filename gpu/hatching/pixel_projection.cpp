@@ -142,9 +142,10 @@ void GpuPixelProjection::project(const TriangleMesh& mesh, const FacePoints& poi
                                                   .quads = static_cast<Word>((parts.size() + 3) / 4)};
             stream_.dispatch(project_, tile.stride / 4, {*on_faces, faces_, barycentrics_, *slabs[s], columns_},
                              parameters);
-            stream_.fetch(columns_, parts);
+            download(columns_, parts);
         }
     });
+    finish();
 }
 
 void GpuPixelProjection::directions(const TriangleMesh& mesh, const HatchingView& view, const FacePoints& points,
@@ -179,9 +180,26 @@ void GpuPixelProjection::directions(const TriangleMesh& mesh, const HatchingView
             for (std::size_t k = 0; k < some.size(); ++k)
                 parts.push_back({k * field_bytes, std::as_writable_bytes(out.subspan(
                                                       (first + k) * points.size() + tile.first, tile.count))});
-            stream_.fetch(doubled_, parts);
+            download(doubled_, parts);
         }
     });
+    finish();
+}
+
+void GpuPixelProjection::finish() {
+    stream_.finish();
+    waiting_bytes_ = 0;
+}
+
+// Records the download of parts of a buffer. Waits for all that is recorded once it is much, as it passes through
+// staging memory of that size.
+void GpuPixelProjection::download(const Buffer& source, std::span<const HostReadback> parts) {
+    constexpr std::size_t k_much = std::size_t{128} << 20;
+    for (const HostReadback& part : parts) {
+        stream_.download<std::byte>(source, part.target, part.offset);
+        waiting_bytes_ += part.target.size();
+    }
+    if (waiting_bytes_ >= k_much) finish();
 }
 
 /// Uploads the points tile by tile, and calls use(tile) for each.

@@ -46,6 +46,8 @@ class GpuPixelProjection final : public PixelProjection {
     template <typename Use>
     void for_each_tile(const FacePoints& points, Use&& use);
     void upload_points(const FacePoints& points, const Tile& tile);
+    void download(const Buffer& source, std::span<const HostReadback> parts);
+    void finish();
     void project(const TriangleMesh& mesh, const FacePoints& points, std::span<const Shared> slabs,
                  std::span<float> out);
     Shared corners(const TriangleMesh& mesh);
@@ -64,6 +66,7 @@ class GpuPixelProjection final : public PixelProjection {
     Kernel project_, directions_, view_curvature_;
     BufferCache kept_;
     Buffer faces_, barycentrics_, columns_, doubled_;  // of a tile
+    std::size_t waiting_bytes_ = 0;                    // of recorded downloads
 };
 
 /// Returns the fastest projection for a device: CpuPixelProjection if the device is the host's processor.

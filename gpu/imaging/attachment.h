@@ -1,6 +1,6 @@
 #pragma once
 
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include "gpu/runtime/device/memory_allocator.h"
 #include "gpu/runtime/device/unique_handle.h"

@@ -47,8 +47,9 @@ Threads threads_of(const SumParameters& parameters, GaussianSums::Axis axis, std
 
 }  // namespace
 
-GpuGaussian::GpuGaussian(Device& device, float sigma)
-    : kernel(gaussian_kernel(sigma)), weights(Buffer::of<float>(device, padded_weights(kernel))) {}
+GpuGaussian::GpuGaussian(Device& device, Stream& stream, float sigma) : kernel(gaussian_kernel(sigma)) {
+    weights = uploaded<float>(device, stream, padded_weights(kernel));
+}
 
 GaussianSums::GaussianSums(Device& device)
     : device_(device),

@@ -23,8 +23,8 @@ struct GpuGaussian {
     GaussianKernel kernel;
     Buffer weights;
 
-    /// Throws UsageError as gaussian_kernel does.
-    GpuGaussian(Device& device, float sigma);
+    /// Records the upload of the weights. Throws UsageError as gaussian_kernel does.
+    GpuGaussian(Device& device, Stream& stream, float sigma);
 };
 
 /// Computes Gaussian-weighted sums along one axis, the steps of separable filters. Images have four lanes: a vec4

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "embedded/imaging_gbuffer_frag.h"
@@ -70,18 +71,17 @@ vec4 negated(const vec4& v) {
 
 }  // namespace
 
-GBuffer GpuGBuffer::download() const {
+GBuffer GpuGBuffer::fetch(Stream& stream) const {
     GBuffer out{.width = width, .height = height, .face = {}, .barycentric = {}, .depth = {}};
     out.face.resize(out.size());
     out.barycentric.resize(out.size());
     out.depth.resize(out.size());
-    std::vector<float> corner(out.size());
-    face.download<std::uint32_t>(out.face);
-    depth.download<float>(out.depth);
-    for (std::size_t c = 0; c < 2; ++c) {
-        barycentric.download<float>(corner, c * out.size() * sizeof(float));
-        for (std::size_t p = 0; p < out.size(); ++p) out.barycentric[p][c] = corner[p];
-    }
+    std::vector<float> corners(2 * out.size());
+    const auto part = [](const Buffer& buffer, auto& values) {
+        return BufferReadback{&buffer, 0, std::as_writable_bytes(std::span(values))};
+    };
+    stream.fetch(std::array{part(face, out.face), part(depth, out.depth), part(barycentric, corners)});
+    for (std::size_t p = 0; p < out.size(); ++p) out.barycentric[p] = {corners[p], corners[out.size() + p]};
     return out;
 }
 
@@ -97,10 +97,17 @@ GpuGBufferRenderer::GpuGBufferRenderer(Device& device, int tile_size, std::size_
 }
 
 GBuffer GpuGBufferRenderer::render(const TriangleMesh& mesh, const Camera& camera, int width, int height) {
-    return render_on_device(mesh, camera, width, height).download();
+    return record(mesh, camera, width, height).fetch(stream_);
 }
 
 GpuGBuffer GpuGBufferRenderer::render_on_device(const TriangleMesh& mesh, const Camera& camera, int width, int height) {
+    GpuGBuffer out = record(mesh, camera, width, height);
+    stream_.finish();
+    return out;
+}
+
+// Records the rendering; what must be done before a next tile or part has been waited for.
+GpuGBuffer GpuGBufferRenderer::record(const TriangleMesh& mesh, const Camera& camera, int width, int height) {
     check_size(device_, width, height);
     const MeshSurface surface{.faces = mesh.faces, .vertices = mesh.vertices, .normals = {}, .colors = {}};
     whole_ = fits(surface, part_bytes_) ? upload(surface, 0) : Part{};
@@ -113,13 +120,14 @@ GpuGBuffer GpuGBufferRenderer::render_on_device(const TriangleMesh& mesh, const 
                    .depth = Buffer(device_, words)};
     const View view{camera, width, height};
     for_each_tile(width, height, tile_size_, [&](const PictureTile& tile) {
+        stream_.finish();
         draw_faces(tile, view, surface);
         find_points(tile, view, surface, out);
     });
     return out;
 }
 
-GpuGBufferRenderer::Part GpuGBufferRenderer::upload(const MeshSurface& surface, std::size_t first) const {
+GpuGBufferRenderer::Part GpuGBufferRenderer::upload(const MeshSurface& surface, std::size_t first) {
     std::vector<vec4> positions;
     positions.reserve(surface.vertices.size());
     for (const Vec3& v : surface.vertices) positions.push_back({v.x(), v.y(), v.z(), 1});
@@ -128,16 +136,15 @@ GpuGBufferRenderer::Part GpuGBufferRenderer::upload(const MeshSurface& surface, 
     for (const Face& face : surface.faces) faces.push_back({face[0], face[1], face[2], 0});
     return {.first = static_cast<std::uint32_t>(first),
             .end = static_cast<std::uint32_t>(first + faces.size()),
-            .positions = Buffer::of<vec4>(device_, positions),
-            .faces = Buffer::of<uvec4>(device_, faces)};
+            .positions = uploaded<vec4>(device_, stream_, positions),
+            .faces = uploaded<uvec4>(device_, stream_, faces)};
 }
 
-// Calls use(part) for all parts, and finishes the recorded work before the next part.
+// Calls use(part) for all parts. Work on one of several parts is done before the next, so that few are in memory.
 template <typename Use>
 void GpuGBufferRenderer::for_each_part(const MeshSurface& surface, Use&& use) {
     if (whole_.faces) {
         use(whole_);
-        stream_.finish();
         return;
     }
     const std::size_t faces = surface.faces.size(), step = faces_per_part(part_bytes_);

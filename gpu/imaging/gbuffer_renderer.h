@@ -24,7 +24,8 @@ struct GpuGBuffer {
     Buffer barycentric;  ///< 2 x pixels: a float per pixel for corner 1, then one for corner 2
     Buffer depth;        ///< a float per pixel; infinity: no face
 
-    GBuffer download() const;
+    /// Waits for the work that `stream` has recorded, and returns the result.
+    GBuffer fetch(Stream& stream) const;
 };
 
 /// Renders G-buffers on the device. Faces equal those of render_gbuffer except at pixels within about 1/16 pixel of
@@ -55,7 +56,8 @@ class GpuGBufferRenderer final : public GBufferRenderer {
         std::uint32_t first, end;
         Buffer positions, faces;
     };
-    Part upload(const MeshSurface& surface, std::size_t first) const;
+    GpuGBuffer record(const TriangleMesh& mesh, const Camera& camera, int width, int height);
+    Part upload(const MeshSurface& surface, std::size_t first);
     template <typename Use>
     void for_each_part(const MeshSurface& surface, Use&& use);
     void reserve_tile(int width, int height);

@@ -82,37 +82,43 @@ PixelBox whole(int width, int height) {
     return {0, 0, width, height};
 }
 
-GpuImages upload(Device& device, const ImageStack& images, std::size_t first, std::size_t count) {
+// Records the upload of some of the images.
+GpuImages upload(Device& device, Stream& stream, const ImageStack& images, std::size_t first, std::size_t count) {
     const auto values = std::span(images.values).subspan(first * images.pixels(), count * images.pixels());
-    return {images.width, images.height, static_cast<Word>(count), Buffer::of<float>(device, values)};
+    return {images.width, images.height, static_cast<Word>(count), uploaded(device, stream, values)};
 }
 
-// Downloads stack number `place` of a buffer that holds equal stacks one after the other.
-ImageStack download_stack(const Buffer& buffer, int width, int height, std::size_t count, std::size_t place = 0) {
-    ImageStack stack(width, height, count);
-    buffer.download<float>(stack.values, place * stack.values.size() * sizeof(float));
+// Makes a stack for number `place` of a buffer's equal stacks, and adds what it is to read to `parts`.
+ImageStack readback(const Buffer& buffer, const GpuImageDerivatives& of, std::size_t place,
+                    std::vector<BufferReadback>& parts) {
+    ImageStack stack(of.width, of.height, of.count);
+    const std::span<std::byte> target = std::as_writable_bytes(std::span(stack.values));
+    parts.push_back({&buffer, place * target.size(), target});
     return stack;
 }
 
 }  // namespace
 
 ImageStack GpuImages::download() const {
-    return download_stack(values, width, height, count);
+    ImageStack stack(width, height, count);
+    values.download<float>(stack.values);
+    return stack;
 }
 
-ImageDerivatives GpuImageDerivatives::download() const {
-    const auto stack = [&](const Buffer& buffer, std::size_t place) {
-        return download_stack(buffer, width, height, count, place);
-    };
+ImageDerivatives GpuImageDerivatives::fetch(Stream& stream) const {
+    std::vector<BufferReadback> parts;
+    const auto stack = [&](const Buffer& buffer, std::size_t place) { return readback(buffer, *this, place, parts); };
     const bool oriented = orientation.bytes() > 0;
-    return {.value = stack(value, 0),
-            .gradient_x = stack(gradient, 0),
-            .gradient_y = stack(gradient, 1),
-            .gradient_magnitude = stack(magnitude, 0),
-            .maximum_curvature = stack(curvature, 0),
-            .minimum_curvature = stack(curvature, 1),
-            .orientation_cos = oriented ? stack(orientation, 0) : ImageStack(),
-            .orientation_sin = oriented ? stack(orientation, 1) : ImageStack()};
+    ImageDerivatives result{.value = stack(value, 0),
+                            .gradient_x = stack(gradient, 0),
+                            .gradient_y = stack(gradient, 1),
+                            .gradient_magnitude = stack(magnitude, 0),
+                            .maximum_curvature = stack(curvature, 0),
+                            .minimum_curvature = stack(curvature, 1),
+                            .orientation_cos = oriented ? stack(orientation, 0) : ImageStack(),
+                            .orientation_sin = oriented ? stack(orientation, 1) : ImageStack()};
+    stream.fetch(parts);
+    return result;
 }
 
 GpuImageFilters::GpuImageFilters(Device& device, Profiler* profiler)
@@ -128,62 +134,78 @@ GpuImageFilters::GpuImageFilters(Device& device, Profiler* profiler)
       orientation_(
           kernel_of<OrientationParameters, vec4, vec4, vec4, Word, float>(device, shaders::imaging_orientation_comp)) {}
 
+// One submission: the mask's box is found on the host, which has the mask.
 ImageDerivatives GpuImageFilters::derivatives(const ImageStack& images, std::span<const std::uint32_t> face,
                                               float sigma, bool with_orientations) {
     check_derivatives(images, face);
-    const Buffer faces = Buffer::of(device_, face);
-    const GpuMaskedImages inside = masked(upload(device_, images, 0, images.count), faces);
+    const Buffer faces = uploaded(device_, stream_, face);
+    const GpuImages on_device = upload(device_, stream_, images, 0, images.count);
+    const GpuMaskedImages inside = pack(stream_, on_device, faces, mask_box(face, images.width));
     GpuImageDerivatives out;
     record_derivatives(stream_, inside, sigma, out, with_orientations);
-    stream_.finish();
-    return out.download();
+    return out.fetch(stream_);
 }
 
-ImageStack GpuImageFilters::blurred(const ImageStack& images, float sigma) {
-    ImageStack out(images.width, images.height, images.count);
-    GpuImages blurred_images;
+// One submission for every k_max_derived_images images.
+std::vector<ImageStack> GpuImageFilters::blurred(const ImageStack& images, std::span<const float> sigmas) {
+    std::vector<ImageStack> out(sigmas.size(), ImageStack(images.width, images.height, images.count));
+    std::vector<GpuImages> blurred_images(sigmas.size());
     for (std::size_t first = 0; first < images.count; first += k_max_derived_images) {
         const std::size_t count = std::min(k_max_derived_images, images.count - first);
-        record_blur(stream_, upload(device_, images, first, count), sigma, blurred_images);
-        stream_.fetch(blurred_images.values,
-                      std::span(out.values).subspan(first * images.pixels(), count * images.pixels()));
+        const GpuImages some = upload(device_, stream_, images, first, count);
+        std::vector<BufferReadback> parts;
+        for (std::size_t s = 0; s < sigmas.size(); ++s) {
+            record_blur(stream_, some, sigmas[s], blurred_images[s]);
+            const std::span values(out[s].values);
+            parts.push_back({&blurred_images[s].values, 0,
+                             std::as_writable_bytes(values.subspan(first * images.pixels(), count * images.pixels()))});
+        }
+        stream_.fetch(parts);
     }
     return out;
 }
 
 GpuMaskedImages GpuImageFilters::masked(const GpuImages& images, const Buffer& face) {
-    GpuMaskedImages out{.width = images.width,
-                        .height = images.height,
-                        .count = images.count,
-                        .face = &face,
-                        .box = std::nullopt,
-                        .packed = {},
-                        .inside = {}};
     // Left, top, right and bottom; the latter two are exclusive.
     std::array<Word, 4> bounds{static_cast<Word>(images.width), static_cast<Word>(images.height), 0, 0};
-    const Buffer device_bounds = Buffer::of<Word>(device_, bounds);
+    const Buffer device_bounds = uploaded<Word>(device_, stream_, bounds);
     const auto width = static_cast<Word>(images.width), height = static_cast<Word>(images.height);
     ImageParameters parameters = parameters_of(images.width, images.height, images.count, {});
     parameters.rows = device_.runs_card_kernels() ? k_box_rows_on_cards : k_box_rows_on_cpus;
     stream_.dispatch(box_, Threads(width, (height + parameters.rows - 1) / parameters.rows), {face, device_bounds},
                      parameters);
     stream_.fetch<Word>(device_bounds, bounds);
-    if (bounds[2] == 0) return out;
-    out.box = PixelBox{.x = static_cast<int>(bounds[0]),
+    std::optional<PixelBox> box;
+    if (bounds[2] != 0)
+        box = PixelBox{.x = static_cast<int>(bounds[0]),
                        .y = static_cast<int>(bounds[1]),
                        .width = static_cast<int>(bounds[2] - bounds[0]),
                        .height = static_cast<int>(bounds[3] - bounds[1])};
-    out.packed = Buffer(device_, plane_bytes(*out.box));
-    out.inside = Buffer(device_, plane_bytes(*out.box) / 4);
-    stream_.dispatch(pack_masked_, pixels_of(*out.box), {images.values, face, out.packed, out.inside},
-                     parameters_of(out));
+    GpuMaskedImages out = pack(stream_, images, face, box);
     stream_.finish();
+    return out;
+}
+
+// Records the packing of the images inside the mask.
+GpuMaskedImages GpuImageFilters::pack(Stream& stream, const GpuImages& images, const Buffer& face,
+                                      std::optional<PixelBox> box) {
+    GpuMaskedImages out{.width = images.width,
+                        .height = images.height,
+                        .count = images.count,
+                        .face = &face,
+                        .box = box,
+                        .packed = {},
+                        .inside = {}};
+    if (!box) return out;
+    out.packed = Buffer(device_, plane_bytes(*box));
+    out.inside = Buffer(device_, plane_bytes(*box) / 4);
+    stream.dispatch(pack_masked_, pixels_of(*box), {images.values, face, out.packed, out.inside}, parameters_of(out));
     return out;
 }
 
 void GpuImageFilters::record_derivatives(Stream& stream, const GpuMaskedImages& images, float sigma,
                                          GpuImageDerivatives& out, bool with_orientations) {
-    const GpuGaussian gaussian(device_, sigma);
+    const GpuGaussian gaussian(device_, stream, sigma);
     out.width = images.width;
     out.height = images.height;
     out.count = images.count;
@@ -209,7 +231,7 @@ void GpuImageFilters::record_derivatives(Stream& stream, const GpuMaskedImages& 
 }
 
 void GpuImageFilters::record_blur(Stream& stream, const GpuImages& images, float sigma, GpuImages& out) {
-    const GpuGaussian gaussian(device_, sigma);
+    const GpuGaussian gaussian(device_, stream, sigma);
     const PixelBox box = whole(images.width, images.height);
     const ImageParameters parameters = parameters_of(images.width, images.height, images.count, box);
     out.width = images.width;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "gpu/imaging/gaussian_sums.h"
 #include "gpu/runtime/device/device.h"
@@ -47,7 +48,8 @@ struct GpuImageDerivatives {
     Buffer curvature;    ///< 2 x count x pixels: maximum, then minimum
     Buffer orientation;  ///< 2 x count x pixels: cos, then sin of the doubled angle, times the coherence; or empty
 
-    ImageDerivatives download() const;
+    /// Waits for the work that `stream` has recorded, and returns the results.
+    ImageDerivatives fetch(Stream& stream) const;
 };
 
 /// Filters images on the device. For values from 0 to 1, results agree with those of CpuImageFilters up to float
@@ -61,7 +63,8 @@ class GpuImageFilters final : public ImageFilters {
     /// once (4 million for four images if storage buffers have 128 MiB).
     ImageDerivatives derivatives(const ImageStack& images, std::span<const std::uint32_t> face, float sigma,
                                  bool with_orientations = true) override;
-    ImageStack blurred(const ImageStack& images, float sigma) override;
+    std::vector<ImageStack> blurred(const ImageStack& images, std::span<const float> sigmas) override;
+    using ImageFilters::blurred;
 
     /// Returns the images inside the mask of a G-buffer's faces, for derivatives at several scales. Waits until they
     /// are computed.
@@ -74,6 +77,7 @@ class GpuImageFilters final : public ImageFilters {
     void record_blur(Stream& stream, const GpuImages& images, float sigma, GpuImages& out);
 
   private:
+    GpuMaskedImages pack(Stream& stream, const GpuImages& images, const Buffer& face, std::optional<PixelBox> box);
     void reserve_planes(const PixelBox& box);
     void sum_mask(Stream& stream, const GpuGaussian& gaussian, const GpuMaskedImages& images);
     void sum_images(Stream& stream, const GpuGaussian& gaussian, const GpuMaskedImages& images);

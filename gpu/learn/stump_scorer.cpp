@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "embedded/learn_stumps_comp.h"
+#include "host/core/parallel.h"
 #include "host/learn/boosting/grouped_stumps.h"
 #include "host/learn/boosting/threshold_ranks.h"
 #include "shaders/shared/stumps.h"
@@ -158,9 +159,34 @@ StructLayout feature_texel(std::uint32_t bits, bool on_card) {
     return on_card && bits != k_float_bits ? layout_of<std::uint32_t>() : layout_of<shared::uvec4>();
 }
 
+// Where the parts of a tile's input are in its buffer, in bytes.
+struct InputLayout {
+    struct Part {
+        std::size_t offset, bytes;
+    };
+    Part stumps, groups, constant, features;
+    std::size_t bytes() const { return features.offset + features.bytes; }
+};
+
+InputLayout layout_of_input(const DeviceStumps& grouped, std::size_t feature_bytes, const DeviceInfo& info) {
+    const std::size_t alignment = std::max<std::size_t>({info.storage_alignment, info.texel_alignment, 16});
+    std::size_t end = 0;
+    const auto part = [&](std::size_t bytes) {
+        const std::size_t offset = (end + alignment - 1) / alignment * alignment;
+        end = offset + bytes;
+        return InputLayout::Part{offset, bytes};
+    };
+    InputLayout layout{};
+    layout.stumps = part(grouped.stumps.size() * sizeof(GroupedStump));
+    layout.groups = part(grouped.groups.size() * sizeof(StumpGroup));
+    layout.constant = part(grouped.constant.size() * sizeof(float));
+    layout.features = part(feature_bytes);
+    return layout;
+}
+
 template <typename T>
-BufferRange whole(const Buffer& buffer, const std::vector<T>& values) {
-    return {buffer, 0, values.size() * sizeof(T)};
+void write_part(const std::vector<T>& values, InputLayout::Part part, std::span<std::byte> memory) {
+    std::ranges::copy(std::as_bytes(std::span(values)), memory.subspan(part.offset).begin());
 }
 
 }  // namespace
@@ -231,20 +257,9 @@ void GpuStumpScorer::probabilities_of_all(const BoostedStumps& classifier, Link 
     const DeviceStumps grouped = group(classifier, bits_);
     const Classifier on_device{grouped, classifier.class_count, link, scale};
     const std::size_t tile_rows = rows_per_tile(on_device, rows);
-    reserve(device_, features_, grouped.columns.size() * on_device.feature_bytes(tile_rows));
     reserve(device_, probabilities_, tile_rows * classifier.class_count * sizeof(float));
-    upload<GroupedStump>(stumps_, grouped.stumps);
-    upload<StumpGroup>(groups_, grouped.groups);
-    upload<float>(constant_, grouped.constant);
     for (std::size_t first = 0; first < rows; first += tile_rows)
         score_tile(on_device, matrices, first, std::min(tile_rows, rows - first), tile_rows);
-}
-
-// Uploads with the work that is recorded next, so that it costs no submission of its own.
-template <typename T>
-void GpuStumpScorer::upload(Buffer& buffer, const std::vector<T>& values) {
-    reserve(device_, buffer, values.size() * sizeof(T));
-    stream_.upload<T>(buffer, values);
 }
 
 void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const ScoredMatrix> matrices, std::size_t first,
@@ -252,18 +267,23 @@ void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const Sc
     const DeviceStumps& grouped = classifier.grouped;
     const std::size_t classes = classifier.class_count, column_bytes = classifier.feature_bytes(stride);
     const std::vector<Piece> pieces = pieces_of(matrices, first, rows);
-    for (std::size_t c = 0; c < grouped.columns.size(); ++c) {
-        const FeatureThresholds& column = grouped.columns[c];
-        stream_.upload_with(
-            features_, classifier.feature_bytes(rows), c * column_bytes, [&](std::span<std::byte> memory) {
-                for (const Piece& piece : pieces)
-                    write_features(piece.matrix->features->column(column.feature).subspan(piece.first, piece.rows),
-                                   column, grouped.bits, memory.subspan(classifier.feature_bytes(piece.place)));
-            });
-    }
+    const InputLayout layout = layout_of_input(grouped, grouped.columns.size() * column_bytes, device_.info());
+    reserve(device_, input_, layout.bytes());
+    stream_.upload_with(input_, layout.bytes(), 0, [&](std::span<std::byte> memory) {
+        write_part(grouped.stumps, layout.stumps, memory);
+        write_part(grouped.groups, layout.groups, memory);
+        write_part(grouped.constant, layout.constant, memory);
+        parallel_for(grouped.columns.size(), [&](std::size_t c) {
+            const FeatureThresholds& column = grouped.columns[c];
+            const std::span<std::byte> rows_of_column = memory.subspan(layout.features.offset + c * column_bytes);
+            for (const Piece& piece : pieces)
+                write_features(piece.matrix->features->column(column.feature).subspan(piece.first, piece.rows), column,
+                               grouped.bits, rows_of_column.subspan(classifier.feature_bytes(piece.place)));
+        });
+    });
     const std::size_t unit = tile_unit(grouped.bits);
     const std::size_t threads = (rows + unit - 1) / unit * shared::k_stump_neighbors;
-    const BufferRange features(features_, 0, grouped.columns.size() * column_bytes);
+    const auto range = [&](InputLayout::Part part) { return BufferRange(input_, part.offset, part.bytes); };
     for (const GroupRange& part : grouped.parts) {
         const StumpParameters parameters{.rows = static_cast<std::uint32_t>(rows),
                                          .stride = static_cast<std::uint32_t>(column_bytes / sizeof(shared::uvec4)),
@@ -274,9 +294,8 @@ void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const Sc
                                          .link = static_cast<std::uint32_t>(classifier.link),
                                          .scale = classifier.scale};
         stream_.dispatch(kernel(classifier.class_count, grouped.bits, grouped.parts.size() > 1), threads,
-                         {features, whole(stumps_, grouped.stumps), whole(groups_, grouped.groups),
-                          whole(constant_, grouped.constant),
-                          BufferRange(probabilities_, 0, stride * classes * sizeof(float)), features},
+                         {range(layout.features), range(layout.stumps), range(layout.groups), range(layout.constant),
+                          BufferRange(probabilities_, 0, stride * classes * sizeof(float)), range(layout.features)},
                          parameters);
     }
     std::vector<HostReadback> parts;

@@ -33,9 +33,9 @@ inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp",     "bits", 
 
 /// Boosted stumps on the device. Only the features that stumps use are uploaded, as floats or as ranks
 /// (k_stump_bits). The rows of all matrices that are scored together are concatenated and cut into tiles that fit
-/// the device's limits, one submission each. Long classifiers take several dispatches (k_max_iterations).
-/// Probabilities agree with CpuStumpScorer within 1e-5: the order of summation differs, and exp differs between
-/// devices.
+/// the device's limits, one submission and two copies each. Long classifiers take several dispatches
+/// (k_max_iterations). Probabilities agree with CpuStumpScorer within 1e-5: the order of summation differs, and exp
+/// differs between devices.
 class GpuStumpScorer final : public StumpScorer {
   public:
     /// `tile_bytes` limits the size of a tile's features, and of its probabilities, below the device's own limits.
@@ -49,8 +49,6 @@ class GpuStumpScorer final : public StumpScorer {
     struct Classifier;
     void score_tile(const Classifier& classifier, std::span<const ScoredMatrix> matrices, std::size_t first,
                     std::size_t rows, std::size_t stride);
-    template <typename T>
-    void upload(Buffer& buffer, const std::vector<T>& values);
     const Kernel& kernel(std::uint32_t classes, std::uint32_t bits, bool in_parts);
     std::uint32_t quads_of(std::uint32_t bits) const;
     std::size_t tile_unit(std::uint32_t bits) const;
@@ -63,7 +61,7 @@ class GpuStumpScorer final : public StumpScorer {
     Stream stream_;
     std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, Kernel> kernels_;  // by class count, bits, parts
     // Kept between calls.
-    Buffer stumps_, groups_, constant_, features_, probabilities_;
+    Buffer input_, probabilities_;
 };
 
 /// Returns the fastest scorer of a device. If it is this machine's CPU, that is the host's (D6 in docs/portability.md).

@@ -17,7 +17,7 @@ using shared::LineCounts;
 using shared::uvec4;
 using shared::vec4;
 
-DrawPipeline stroke_pipeline(Device& device) {
+DrawPipeline stroke_pipeline(Device& device, VkFormat color) {
     return {device,
             shaders::lines_stroke_vert,
             shaders::lines_stroke_frag,
@@ -25,7 +25,7 @@ DrawPipeline stroke_pipeline(Device& device) {
              .elements = {layout_of<uvec4>(), layout_of<vec4>(), layout_of<std::uint32_t>(),
                           layout_of<shared::StrokeLook>(), layout_of<float>(), layout_of<shared::vec2>(),
                           layout_of<vec4>()}},
-            {.color = Canvas::k_rgba, .blends = true}};
+            {.color = color, .blends = true}};
 }
 
 // Maximum vertex index that every device supports in index buffers.
@@ -34,7 +34,9 @@ constexpr std::uint32_t k_max_indexed = (1u << 24) - 1;
 }  // namespace
 
 LineRenderer::Lines::Lines(Device& device, const GpuLineSurface& surface)
-    : extraction(surface), chains(extraction), strokes(chains), coherence(strokes), pipeline(stroke_pipeline(device)) {}
+    : extraction(surface), chains(extraction), strokes(chains), coherence(strokes) {
+    pipelines[Canvas::k_rgba] = stroke_pipeline(device, Canvas::k_rgba);
+}
 
 LineRenderer::LineRenderer(Device& device, const GpuLineSurface& surface)
     : device_(device),
@@ -95,29 +97,21 @@ void LineRenderer::draw_surface(Stream& stream, const GpuCurvedSurface& snapshot
     stream.render(pass);
 }
 
-void LineRenderer::draw_strokes(Stream& stream, const LinePicture& picture) {
-    canvas_.separate_passes(stream);
-    Pass pass("lines/strokes", {.color = canvas_.color_view(), .extent = canvas_.extent()});
-    pass.draw(lines_->pipeline,
-              {.indirect = &lines_->extraction.counts(), .indirect_offset = offsetof(LineCounts, draw)},
+void LineRenderer::draw_strokes(Stream& stream, const LinePicture& picture, const StrokeTarget& target) {
+    DrawPipeline& pipeline = lines_->pipelines[target.format];
+    if (!pipeline) pipeline = stroke_pipeline(device_, target.format);
+    Pass pass("lines/strokes", {.color = target.color, .extent = canvas_.extent()});
+    pass.draw(pipeline, {.indirect = &lines_->extraction.counts(), .indirect_offset = offsetof(LineCounts, draw)},
               {lines_->chains.points(), lines_->strokes.strokes(), lines_->strokes.visible(), lines_->strokes.looks(),
                textures_, lines_->coherence.phases(), inks_ ? inks_->inks() : lines_->strokes.looks()},
               shared::StrokeDrawParameters{.width = static_cast<float>(picture.view.width),
                                            .height = static_cast<float>(picture.view.height)});
     stream.render(pass);
-    canvas_.end(stream);
 }
 
-void LineRenderer::record(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture) {
+// Records all up to the strokes, and draws the surface into the canvas for that.
+void LineRenderer::record_strokes(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture) {
     const StrokeView& view = picture.view;
-    resize(view.width, view.height);
-    transparent_ = picture.surface.transparent;
-    if (picture.families == 0) {
-        surface_.surface().check_vertices(snapshot.vertices);
-        draw_surface(stream, snapshot, picture);
-        canvas_.end(stream);
-        return;
-    }
     if (!lines_) lines_.emplace(device_, surface_);
     lines_->extraction.record(
         stream, snapshot, picture.families,
@@ -127,7 +121,30 @@ void LineRenderer::record(Stream& stream, const GpuCurvedSurface& snapshot, cons
     canvas_.copy_depth(stream, depths_);
     lines_->strokes.record(stream, snapshot, depths_, view, picture.looks, inks_ ? &*inks_ : nullptr);
     lines_->coherence.record(stream, snapshot.vertices, view, picture.coherent);
-    draw_strokes(stream, picture);
+}
+
+void LineRenderer::record(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture) {
+    resize(picture.view.width, picture.view.height);
+    transparent_ = picture.surface.transparent;
+    if (picture.families == 0) {
+        surface_.surface().check_vertices(snapshot.vertices);
+        draw_surface(stream, snapshot, picture);
+    } else {
+        record_strokes(stream, snapshot, picture);
+        canvas_.separate_passes(stream);
+        draw_strokes(stream, picture, {.color = canvas_.color_view(), .format = Canvas::k_rgba});
+    }
+    canvas_.end(stream);
+}
+
+void LineRenderer::record_over(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture,
+                               const StrokeTarget& target) {
+    if (picture.families == 0) return;
+    resize(picture.view.width, picture.view.height);
+    LinePicture bare = picture;
+    bare.surface = LinePicture{}.surface;
+    record_strokes(stream, snapshot, bare);
+    draw_strokes(stream, bare, target);
 }
 
 Image LineRenderer::render(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture) {

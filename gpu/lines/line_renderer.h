@@ -1,8 +1,9 @@
 #pragma once
 
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,6 +31,13 @@ struct LinePicture {
     PaintLook surface{.light = SurfaceLight::none, .plain = {255, 255, 255}};
 };
 
+/// An image of the caller's that strokes are drawn over, in VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL.
+struct StrokeTarget {
+    VkImageView color = VK_NULL_HANDLE;
+    VkFormat format =
+        VK_FORMAT_UNDEFINED;  ///< of 8-bit UNORM or 16-bit float colors; they are blended as they are stored
+};
+
 /// Renders line drawings of a surface entirely on the device, from buffers of its vertices, normals and curvature to
 /// an image: extraction, chains, the surface with its depths, visibility, strokes.
 class LineRenderer {
@@ -48,6 +56,10 @@ class LineRenderer {
     /// Records a picture into canvas(), 8-bit RGBA, of the size of the view. Throws DeviceLimitError if the surface
     /// is too large for the device to find lines on, UsageError as GpuLineExtraction does or for an empty picture.
     void record(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture);
+    /// Records the strokes of a picture over an image of the caller's of the size of the view; the surface only hides
+    /// lines. `picture.surface` does not matter. Throws as record().
+    void record_over(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture,
+                     const StrokeTarget& target);
     Canvas& canvas() { return canvas_; }
 
     /// Records, runs and downloads a picture: RGB, or RGBA if its background is transparent.
@@ -63,7 +75,8 @@ class LineRenderer {
   private:
     void resize(int width, int height);
     void draw_surface(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture);
-    void draw_strokes(Stream& stream, const LinePicture& picture);
+    void record_strokes(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture);
+    void draw_strokes(Stream& stream, const LinePicture& picture, const StrokeTarget& target);
     Device& device_;
     const GpuLineSurface& surface_;
     /// The stages from surface to strokes. Members refer to each other, so it must not move.
@@ -72,7 +85,7 @@ class LineRenderer {
         GpuChains chains;
         GpuStrokes strokes;
         GpuCoherence coherence;
-        DrawPipeline pipeline;
+        std::map<VkFormat, DrawPipeline> pipelines;  // by the format of the image
 
         Lines(Device& device, const GpuLineSurface& surface);
     };

@@ -214,6 +214,13 @@ CumulantUnits cumulant_units(const GaussianKernel& kernel) {
     return {(kernel.moment(4) - second * second) / 2, second * second};
 }
 
+std::vector<ImageStack> CpuImageFilters::blurred(const ImageStack& images, std::span<const float> sigmas) {
+    std::vector<ImageStack> result;
+    result.reserve(sigmas.size());
+    for (const float sigma : sigmas) result.push_back(gaussian_blur(images, sigma));
+    return result;
+}
+
 void check_derivatives(const ImageStack& images, std::span<const std::uint32_t> face) {
     if (images.count < 1 || images.count > k_max_derived_images)
         throw UsageError(fmt::format("derivatives of {} images; give 1 to {}", images.count, k_max_derived_images));

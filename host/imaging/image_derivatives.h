@@ -68,16 +68,20 @@ class ImageFilters {
     /// 1 to k_max_derived_images images, with a face for each pixel, and gaussian_kernel accepts sigma.
     virtual ImageDerivatives derivatives(const ImageStack& images, std::span<const std::uint32_t> face, float sigma,
                                          bool with_orientations = true) = 0;
-    /// Convolves any number of images with a Gaussian, as if they were zero outside. Throws UsageError as
-    /// gaussian_kernel.
-    virtual ImageStack blurred(const ImageStack& images, float sigma) = 0;
+    /// Convolves any number of images with Gaussians, as if they were zero outside; returns the images for each sigma.
+    /// Throws UsageError as gaussian_kernel.
+    virtual std::vector<ImageStack> blurred(const ImageStack& images, std::span<const float> sigmas) = 0;
+    ImageStack blurred(const ImageStack& images, float sigma) {
+        return std::move(blurred(images, std::span(&sigma, 1)).front());
+    }
 };
 
 class CpuImageFilters final : public ImageFilters {
   public:
     ImageDerivatives derivatives(const ImageStack& images, std::span<const std::uint32_t> face, float sigma,
                                  bool with_orientations = true) override;
-    ImageStack blurred(const ImageStack& images, float sigma) override { return gaussian_blur(images, sigma); }
+    std::vector<ImageStack> blurred(const ImageStack& images, std::span<const float> sigmas) override;
+    using ImageFilters::blurred;
 };
 
 /// Throws UsageError, as ImageFilters::derivatives documents, if images and faces do not fit together.

@@ -14,6 +14,7 @@
 
 #include "embedded/tests_affine_comp.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/kernels/kernel.h"
 #include "gpu/runtime/record/buffer.h"
 #include "host/core/files.h"
@@ -151,9 +152,9 @@ TEST(Validation, TheLogOutlivesTheDevice) {
     if (!shared_device().switches().validates) GTEST_SKIP() << "EXEMPLAR_VALIDATION is not set; tests/run.sh sets it";
     auto device = std::make_unique<Device>(DeviceOptions{.name = std::to_string(shared_device().info().index)});
     const auto log = device->validation_log();
-    auto info = empty_structure<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
-    VkFence fence = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateFence(device->handle(), &info, nullptr, &fence), VK_SUCCESS);
+    const auto info = empty_structure<VkSemaphoreCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO);
+    VkSemaphore semaphore = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateSemaphore(device->handle(), &info, nullptr, &semaphore), VK_SUCCESS);
     EXPECT_TRUE(log->messages().empty());
     device.reset();
     EXPECT_FALSE(log->messages().empty());

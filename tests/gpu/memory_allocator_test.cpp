@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/record/stream.h"
 #include "tests/gpu/support/environment.h"
 

@@ -9,6 +9,7 @@
 
 #include "gpu/imaging/gbuffer_renderer.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 #include "host/core/random.h"
 #include "host/imaging/gbuffer.h"
 #include "tests/gpu/support/environment.h"

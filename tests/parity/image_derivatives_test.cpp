@@ -149,9 +149,8 @@ TEST(ImageDerivativesParity, StayOnTheDeviceForSeveralScales) {
     std::vector<GpuImageDerivatives> results(2);
     filters.record_derivatives(stream, inside, 1, results[0]);
     filters.record_derivatives(stream, inside, 3, results[1]);
-    stream.finish();
-    EXPECT_EQ(results[0].download().minimum_curvature, filters.derivatives(images, faces, 1).minimum_curvature);
-    EXPECT_EQ(results[1].download().orientation_sin, filters.derivatives(images, faces, 3).orientation_sin);
+    EXPECT_EQ(results[0].fetch(stream).minimum_curvature, filters.derivatives(images, faces, 1).minimum_curvature);
+    EXPECT_EQ(results[1].fetch(stream).orientation_sin, filters.derivatives(images, faces, 3).orientation_sin);
 }
 
 TEST(ImageDerivativesParity, OrientationsCanBeLeftOut) {

@@ -23,7 +23,7 @@ struct BenchOptions {
     bool full = false, quick = false;
 };
 
-constexpr std::array<BenchPart, 10> k_parts{{{"features", false, bench_features},
+constexpr std::array<BenchPart, 11> k_parts{{{"features", false, bench_features},
                                              {"train", false, bench_training},
                                              {"label", false, bench_labeling},
                                              {"boosting", false, bench_boosting},
@@ -31,6 +31,7 @@ constexpr std::array<BenchPart, 10> k_parts{{{"features", false, bench_features}
                                              {"cut", false, bench_cut},
                                              {"curvature", false, bench_curvature},
                                              {"lines", false, bench_lines},
+                                             {"host", false, bench_host_work},
                                              {"scaling", true, bench_scaling},
                                              {"arrangements", true, bench_arrangements}}};
 

@@ -77,6 +77,8 @@ void bench_cut(BenchContext& context, const std::function<void(const BenchRow&)>
 void bench_curvature(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 // bench_lines.cpp
 void bench_lines(BenchContext& context, const std::function<void(const BenchRow&)>& row);
+// bench_host_work.cpp
+void bench_host_work(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 // bench_scaling.cpp
 void bench_scaling(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 void bench_arrangements(BenchContext& context, const std::function<void(const BenchRow&)>& row);

@@ -5,12 +5,10 @@
 
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 
 namespace exemplar {
-namespace {
-
-// Makes all writes recorded so far visible to later commands and to the host.
-void make_visible(VkCommandBuffer commands) {
+void record_full_barrier(VkCommandBuffer commands) {
     const VkMemoryBarrier2 all{
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
         .pNext = nullptr,
@@ -23,8 +21,6 @@ void make_visible(VkCommandBuffer commands) {
     dependency.pMemoryBarriers = &all;
     vkCmdPipelineBarrier2(commands, &dependency);
 }
-
-}  // namespace
 
 Commands::Commands(Device& device) : device_(device), memory_(device.lend_commands()) {}
 
@@ -49,7 +45,7 @@ void Commands::begin() {
 
 Ticket Commands::submit(const SubmitOrder& order) {
     begin();
-    make_visible(memory_.buffer);
+    record_full_barrier(memory_.buffer);
     try {
         check(vkEndCommandBuffer(memory_.buffer), "record commands");
         ticket_ = device_.submit(memory_.buffer, order);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include <cstdint>
 #include <optional>
@@ -27,6 +27,9 @@ struct CommandMemory {
     UniqueCommandPool pool;
     VkCommandBuffer buffer = VK_NULL_HANDLE;
 };
+
+/// Records a barrier that makes all writes recorded so far visible to all later commands and to the host.
+void record_full_barrier(VkCommandBuffer commands);
 
 /// A command buffer that is recorded, submitted, waited for and then recorded again. Its writes are visible to all
 /// later submissions and to the host, so submissions need no barriers between them. One thread at a time may use it.

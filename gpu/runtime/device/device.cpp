@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 
 namespace exemplar {
 namespace {
@@ -33,7 +34,21 @@ std::vector<DeviceInfo> without_faults(std::vector<DeviceInfo> devices) {
     return devices;
 }
 
+// Returns a feature that an existing device lacks; empty if none.
+std::string missing_feature(const ExistingDevice& existing) {
+    if (!existing.features12.timelineSemaphore) return "timelineSemaphore";
+    if (!existing.features13.synchronization2) return "synchronization2";
+    if (!existing.features13.dynamicRendering) return "dynamicRendering";
+    return {};
+}
+
 }  // namespace
+
+void require_features(VkPhysicalDeviceVulkan12Features& features12, VkPhysicalDeviceVulkan13Features& features13) {
+    features12.timelineSemaphore = VK_TRUE;
+    features13.synchronization2 = VK_TRUE;
+    features13.dynamicRendering = VK_TRUE;
+}
 
 bool has_extension(VkPhysicalDevice device, const char* name) {
     std::uint32_t count = 0;
@@ -45,7 +60,7 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
 }
 
 Device::Device(const DeviceOptions& options)
-    : switches_(environment_switches()),
+    : switches_(options.switches ? *options.switches : environment_switches()),
       instance_(switches_.validates,
                 options.presentation ? options.presentation->instance_extensions : std::vector<std::string>{}),
       compile_only_(options.compile_only) {
@@ -62,6 +77,32 @@ Device::Device(const DeviceOptions& options)
     create(options.presentation.has_value());
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     if (compile_only_) return;
+    try {
+        create_tools();
+    } catch (...) {
+        destroy();
+        throw;
+    }
+}
+
+Device::Device(const ExistingDevice& existing)
+    : switches_(environment_switches()),
+      instance_(existing.instance, existing.get_instance_proc_addr),
+      info_(describe(existing.physical, 0)),
+      physical_(existing.physical),
+      device_(existing.device),
+      queue_(existing.queue),
+      queue_family_(existing.queue_family),
+      owns_(false),
+      shares_(existing.shares),
+      queue_mutex_(existing.queue_mutex ? existing.queue_mutex : &own_queue_mutex_) {
+    if (!info_.unusable.empty())
+        throw NoDeviceError(fmt::format("device '{}' cannot be used: {}", info_.name, info_.unusable));
+    if (const std::string lack = missing_feature(existing); !lack.empty())
+        throw NoDeviceError(
+            fmt::format("device '{}' was opened without {}; see exemplar::require_features", info_.name, lack));
+    vkGetPhysicalDeviceMemoryProperties(physical_, &memory_types_);
+    tuning_ = load_tuning(info_);
     try {
         create_tools();
     } catch (...) {
@@ -88,7 +129,7 @@ void Device::destroy() {
     timeline_ = UniqueSemaphore();
     staging_.reset();
     memory_.reset();
-    vkDestroyDevice(device_, nullptr);
+    if (owns_) vkDestroyDevice(device_, nullptr);
 }
 
 // Requires that the queue for compute and drawing can present too, as it can with drivers that have windows.
@@ -110,11 +151,9 @@ void Device::create(bool presents) {
                                         .pQueuePriorities = &priority};
     auto features13 =
         empty_structure<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
-    features13.synchronization2 = VK_TRUE;
-    features13.dynamicRendering = VK_TRUE;
     auto features12 = empty_structure<VkPhysicalDeviceVulkan12Features>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &features13);
-    features12.timelineSemaphore = VK_TRUE;
+    require_features(features12, features13);
     auto features =
         empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features12);
     // Accesses out of bounds then do no harm before the validation layer reports them; all devices offer it.
@@ -125,7 +164,9 @@ void Device::create(bool presents) {
     std::vector<const char*> extensions;
     if (presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     constexpr const char* k_portability_subset = "VK_KHR_portability_subset";  // where offered, it must be enabled
-    if (has_extension(physical_, k_portability_subset)) extensions.push_back(k_portability_subset);
+    for (const char* name :
+         {k_portability_subset, VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME, VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME})
+        if (has_extension(physical_, name)) extensions.push_back(name);
     if (statistics_) {
         extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
         features13.pNext = &executables;
@@ -147,8 +188,20 @@ void Device::create(bool presents) {
 Device::~Device() {
     // D20 in docs/portability.md: some devices crash when they are waited for or destroyed.
     if (!device_ || compile_only_) return;
-    vkDeviceWaitIdle(device_);
+    if (owns_)
+        vkDeviceWaitIdle(device_);
+    else
+        wait_for_own_work();
     destroy();
+}
+
+// The rest of the program's work goes on.
+void Device::wait_for_own_work() {
+    try {
+        wait(last_ticket_);
+    } catch (const DeviceError&) {
+        // A lost device runs nothing to wait for.
+    }
 }
 
 std::vector<ExecutableStatistic> Device::statistics_of(const std::string& kernel) const {
@@ -186,7 +239,7 @@ Ticket Device::submit(VkCommandBuffer commands, const SubmitOrder& order) {
     info.pWaitSemaphoreInfos = &wait;
     info.signalSemaphoreInfoCount = order.signal ? 2 : 1;
     info.pSignalSemaphoreInfos = signals.data();
-    const std::lock_guard lock(queue_mutex_);
+    const std::lock_guard lock(*queue_mutex_);
     signals[0].value = last_ticket_ + 1;
     check(vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE),
           [&] { return fmt::format("submit work to device '{}'", info_.name); });
@@ -246,12 +299,12 @@ void Device::name_pipeline(VkPipeline pipeline, const std::string& name) const {
 }
 
 VkResult Device::present(const VkPresentInfoKHR& info) {
-    const std::lock_guard lock(queue_mutex_);
+    const std::lock_guard lock(*queue_mutex_);
     return vkQueuePresentKHR(queue_, &info);
 }
 
 void Device::wait_idle() {
-    const std::lock_guard lock(queue_mutex_);
+    const std::lock_guard lock(*queue_mutex_);
     host_work_.add(HostTask::wait);
     check(vkDeviceWaitIdle(device_), [&] { return fmt::format("wait for device '{}'", info_.name); });
 }

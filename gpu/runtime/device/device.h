@@ -1,6 +1,6 @@
 #pragma once
 
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include <cstdint>
 #include <functional>
@@ -37,9 +37,31 @@ struct DeviceOptions {
     std::string name{};
     std::optional<PresentationOptions> presentation{};  ///< none: nothing is shown in windows
     bool statistics = false;                            ///< keep the driver's statistics of kernels, if it has any
+    std::optional<DeviceSwitches> switches{};           ///< none: those of the environment
     /// Opens devices that cannot run anything, too. compile() is the only use of such a device, and it is never closed.
     bool compile_only = false;
 };
+
+/// A device that the program around Exemplar has opened, of Vulkan 1.3 and with the features that require_features
+/// sets.
+struct ExistingDevice {
+    VkInstance instance = VK_NULL_HANDLE;
+    VkPhysicalDevice physical = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;  ///< for compute, and for drawing if Exemplar is to draw
+    std::uint32_t queue_family = 0;
+    VkPhysicalDeviceVulkan12Features features12{};  ///< as given to vkCreateDevice; `pNext` does not matter
+    VkPhysicalDeviceVulkan13Features features13{};
+    /// Whether VK_KHR_external_memory_fd and VK_KHR_external_semaphore_fd are enabled where the device has them.
+    bool shares = false;
+    /// Locked while Exemplar uses the queue; null: while Exemplar does, no other thread uses it.
+    std::mutex* queue_mutex = nullptr;
+    /// Where to look up Vulkan's functions; null: in the system's loader (libvulkan.so.1).
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
+};
+
+/// Sets the features that Exemplar needs, for vkCreateDevice; leaves others as they are.
+void require_features(VkPhysicalDeviceVulkan12Features& features12, VkPhysicalDeviceVulkan13Features& features13);
 
 /// An opened Vulkan device with one queue for compute, copies and drawing. Objects made from it must be destroyed
 /// before it. Variables of the environment change what it does for tests: DeviceSwitches.
@@ -48,6 +70,10 @@ class Device {
     /// Throws NoDeviceError, which lists the available devices, if there is no such device; another DeviceError for
     /// other failures, e.g. if the device must present and cannot.
     explicit Device(const DeviceOptions& options = {});
+    /// Uses a device of the caller's, which must outlive this. Creates on it what it needs, and destroys only that.
+    /// Throws NoDeviceError if the device, its queue or its features do not suffice.
+    explicit Device(const ExistingDevice& existing);
+    /// Waits for Exemplar's own work.
     ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
@@ -57,6 +83,8 @@ class Device {
     std::vector<std::string> validation_messages() const { return validation_log()->messages(); }
     /// Returns the same log. It outlives the device, whose end reports objects that were not destroyed.
     std::shared_ptr<const ValidationLog> validation_log() const { return instance_.validation_log(); }
+    /// Whether extensions for sharing memory and semaphores by descriptors are enabled where the device has them.
+    bool enables_sharing() const { return shares_; }
     const DeviceSwitches& switches() const { return switches_; }
     /// Whether operations that the host can do as well are faster there: the device is a CPU, so that the host has
     /// the same cores without the detour (D6 in docs/portability.md). Never with EXEMPLAR_HOST=never.
@@ -118,6 +146,7 @@ class Device {
     void require_presentation(const PresentationOptions& presentation) const;
     void create(bool presents);
     void create_tools();
+    void wait_for_own_work();
     void destroy();
     DeviceSwitches switches_;
     HostWorkCounter host_work_;
@@ -128,7 +157,9 @@ class Device {
     VkDevice device_ = VK_NULL_HANDLE;
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queue_family_ = 0;
-    std::mutex queue_mutex_;
+    bool owns_ = true, shares_ = true;
+    std::mutex own_queue_mutex_;
+    std::mutex* queue_mutex_ = &own_queue_mutex_;
     UniqueSemaphore timeline_;  // its value is the ticket of the last finished submission
     Ticket last_ticket_ = 0;
     std::unique_ptr<MemoryAllocator> memory_;

@@ -8,6 +8,7 @@
 
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/device/instance.h"
 #include "gpu/runtime/device/visible_devices.h"
 #include "host/core/text.h"

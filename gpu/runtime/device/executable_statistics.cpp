@@ -6,6 +6,7 @@
 
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 
 namespace exemplar {
 namespace {

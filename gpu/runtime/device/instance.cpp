@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/device/visible_devices.h"
 
 namespace exemplar {
@@ -15,26 +16,12 @@ namespace {
 
 constexpr const char* k_validation_layer = "VK_LAYER_KHRONOS_validation";
 
-void load_loader() {
-    static std::mutex mutex;
-    const std::lock_guard lock(mutex);
-    if (volkGetInstanceVersion() == 0 && volkInitialize() != VK_SUCCESS)
+void require_loader() {
+    if (!load_vulkan_loader())
         throw NoDeviceError(
             "no Vulkan loader found; install libvulkan1 and a driver (mesa-vulkan-drivers has one for any CPU)");
-    if (volkGetInstanceVersion() < VK_API_VERSION_1_3)
+    if (vulkan_loader_version() < VK_API_VERSION_1_3)
         throw NoDeviceError("the Vulkan loader is older than 1.3; update libvulkan1");
-}
-
-// Loads Vulkan's functions. They serve every instance, so they are loaded once, and once more when the first instance
-// with extensions is made. An instance without extensions must not unload the functions of extensions.
-void load_functions(VkInstance instance, bool extended) {
-    static std::mutex mutex;
-    static bool has_some = false, has_extended = false;
-    const std::lock_guard lock(mutex);
-    if (has_extended || (has_some && !extended)) return;
-    volkLoadInstance(instance);
-    has_some = true;
-    has_extended = extended;
 }
 
 bool has_layer(const char* name) {
@@ -70,8 +57,13 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(PFN_vkDebugUtilsMessengerCallb
 
 // Delegates to the default constructor, so that the destructor runs if create() throws.
 Instance::Instance(bool validation, const std::vector<std::string>& extensions) : Instance() {
-    load_loader();
+    require_loader();
     create(validation, extensions);
+}
+
+Instance::Instance(VkInstance existing, PFN_vkGetInstanceProcAddr from) : instance_(existing), owns_(false) {
+    if (!from) require_loader();
+    load_vulkan_functions(existing, from);
 }
 
 void Instance::create(bool validation, const std::vector<std::string>& wanted_extensions) {
@@ -118,21 +110,16 @@ void Instance::create(bool validation, const std::vector<std::string>& wanted_ex
         throw DeviceError(fmt::format("no Vulkan driver here knows the extensions {}; update the driver",
                                       fmt::join(wanted_extensions, ", ")));
     check(result, "create a Vulkan instance");
-    load_functions(instance_, !wanted_extensions.empty());
+    load_vulkan_functions(instance_);
     if (!validation) return;
-    const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
-        vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
-    if (create_messenger)
-        check(create_messenger(instance_, &messenger, nullptr, &messenger_), "listen to the validation layer");
+    if (vkCreateDebugUtilsMessengerEXT)
+        check(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_),
+              "listen to the validation layer");
 }
 
 Instance::~Instance() {
-    if (messenger_) {
-        const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
-            vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
-        destroy(instance_, messenger_, nullptr);
-    }
-    if (instance_) vkDestroyInstance(instance_, nullptr);
+    if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
+    if (instance_ && owns_) vkDestroyInstance(instance_, nullptr);
 }
 
 VkBool32 Instance::collect(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include <memory>
 #include <mutex>
@@ -37,6 +37,8 @@ class Instance {
     /// `validation` loads VK_LAYER_KHRONOS_validation with synchronization validation. Throws NoDeviceError if there
     /// is no loader, DeviceError if the layer or one of `extensions` is missing.
     explicit Instance(bool validation, const std::vector<std::string>& extensions = {});
+    /// Uses an instance of the caller's, which must outlive this. `from` as for load_vulkan_functions.
+    Instance(VkInstance existing, PFN_vkGetInstanceProcAddr from);
     ~Instance();
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -55,6 +57,7 @@ class Instance {
                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
     void create(bool validation, const std::vector<std::string>& wanted_extensions);
     VkInstance instance_ = VK_NULL_HANDLE;
+    bool owns_ = true;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     bool names_objects_ = false;
     std::shared_ptr<ValidationLog> log_ = std::make_shared<ValidationLog>();

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/device/unique_handle.h"
 
 namespace exemplar {

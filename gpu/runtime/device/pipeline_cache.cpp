@@ -10,6 +10,7 @@
 
 #include "gpu/runtime/device/device_cache.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 #include "host/core/files.h"
 
 namespace exemplar {

@@ -1,13 +1,29 @@
 #pragma once
 
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include <utility>
 
 namespace exemplar {
 
-/// Owns one Vulkan object of a device. `destroy` is the address of its destroy function, e.g. &vkDestroyImage.
-template <typename Handle, auto destroy>
+// Destroys an object of a device.
+void destroy(VkDevice device, VkBuffer handle);
+void destroy(VkDevice device, VkBufferView handle);
+void destroy(VkDevice device, VkImage handle);
+void destroy(VkDevice device, VkImageView handle);
+void destroy(VkDevice device, VkDeviceMemory handle);
+void destroy(VkDevice device, VkShaderModule handle);
+void destroy(VkDevice device, VkDescriptorSetLayout handle);
+void destroy(VkDevice device, VkDescriptorPool handle);
+void destroy(VkDevice device, VkPipelineLayout handle);
+void destroy(VkDevice device, VkPipeline handle);
+void destroy(VkDevice device, VkCommandPool handle);
+void destroy(VkDevice device, VkSemaphore handle);
+void destroy(VkDevice device, VkSwapchainKHR handle);
+void destroy(VkDevice device, VkQueryPool handle);
+
+/// Owns one Vulkan object of a device.
+template <typename Handle>
 class UniqueHandle {
   public:
     UniqueHandle() = default;
@@ -22,7 +38,7 @@ class UniqueHandle {
     UniqueHandle(const UniqueHandle&) = delete;
     UniqueHandle& operator=(const UniqueHandle&) = delete;
     ~UniqueHandle() {
-        if (handle_ != VK_NULL_HANDLE) (*destroy)(device_, handle_, nullptr);
+        if (handle_ != VK_NULL_HANDLE) destroy(device_, handle_);
     }
 
     Handle get() const { return handle_; }
@@ -34,19 +50,19 @@ class UniqueHandle {
     Handle handle_ = VK_NULL_HANDLE;
 };
 
-using UniqueBuffer = UniqueHandle<VkBuffer, &vkDestroyBuffer>;
-using UniqueBufferView = UniqueHandle<VkBufferView, &vkDestroyBufferView>;
-using UniqueImage = UniqueHandle<VkImage, &vkDestroyImage>;
-using UniqueImageView = UniqueHandle<VkImageView, &vkDestroyImageView>;
-using UniqueMemory = UniqueHandle<VkDeviceMemory, &vkFreeMemory>;
-using UniqueShaderModule = UniqueHandle<VkShaderModule, &vkDestroyShaderModule>;
-using UniqueSetLayout = UniqueHandle<VkDescriptorSetLayout, &vkDestroyDescriptorSetLayout>;
-using UniqueDescriptorPool = UniqueHandle<VkDescriptorPool, &vkDestroyDescriptorPool>;
-using UniquePipelineLayout = UniqueHandle<VkPipelineLayout, &vkDestroyPipelineLayout>;
-using UniquePipeline = UniqueHandle<VkPipeline, &vkDestroyPipeline>;
-using UniqueCommandPool = UniqueHandle<VkCommandPool, &vkDestroyCommandPool>;
-using UniqueSemaphore = UniqueHandle<VkSemaphore, &vkDestroySemaphore>;
-using UniqueSwapchain = UniqueHandle<VkSwapchainKHR, &vkDestroySwapchainKHR>;
-using UniqueQueryPool = UniqueHandle<VkQueryPool, &vkDestroyQueryPool>;
+using UniqueBuffer = UniqueHandle<VkBuffer>;
+using UniqueBufferView = UniqueHandle<VkBufferView>;
+using UniqueImage = UniqueHandle<VkImage>;
+using UniqueImageView = UniqueHandle<VkImageView>;
+using UniqueMemory = UniqueHandle<VkDeviceMemory>;
+using UniqueShaderModule = UniqueHandle<VkShaderModule>;
+using UniqueSetLayout = UniqueHandle<VkDescriptorSetLayout>;
+using UniqueDescriptorPool = UniqueHandle<VkDescriptorPool>;
+using UniquePipelineLayout = UniqueHandle<VkPipelineLayout>;
+using UniquePipeline = UniqueHandle<VkPipeline>;
+using UniqueCommandPool = UniqueHandle<VkCommandPool>;
+using UniqueSemaphore = UniqueHandle<VkSemaphore>;
+using UniqueSwapchain = UniqueHandle<VkSwapchainKHR>;
+using UniqueQueryPool = UniqueHandle<VkQueryPool>;
 
 }  // namespace exemplar

@@ -7,6 +7,7 @@
 
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/device/instance.h"
 
 namespace exemplar {

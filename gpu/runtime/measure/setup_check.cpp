@@ -3,7 +3,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <unistd.h>
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "gpu/runtime/device/device_cache.h"
+#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/device/pipeline_cache.h"
 #include "gpu/runtime/device/tuning.h"
 #include "host/core/errors.h"
@@ -184,8 +185,7 @@ std::vector<path> driver_files(const MachineView& machine) {
 }
 
 std::vector<Finding> check_loader() {
-    if (volkInitialize() == VK_SUCCESS) {
-        const std::uint32_t version = volkGetInstanceVersion();
+    if (const std::uint32_t version = vulkan_loader_version()) {
         return {{Level::good, fmt::format("Vulkan loader {}.{}.{}", VK_API_VERSION_MAJOR(version),
                                           VK_API_VERSION_MINOR(version), VK_API_VERSION_PATCH(version))}};
     }

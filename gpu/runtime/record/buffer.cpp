@@ -9,6 +9,7 @@
 
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/record/stream.h"
 
 namespace exemplar {
@@ -28,8 +29,11 @@ std::uint64_t next_buffer_id() {
 
 }  // namespace
 
-Buffer::Resource::Resource(Device& owner, std::size_t capacity)
-    : device(owner), id(next_buffer_id()), buffer(owner.handle()) {
+Buffer::Resource::Resource(Device& owner, VkBuffer borrowed, std::size_t size)
+    : device(owner), id(next_buffer_id()), capacity(size), handle(borrowed) {}
+
+Buffer::Resource::Resource(Device& owner, std::size_t size)
+    : device(owner), id(next_buffer_id()), capacity(size), owned(owner.handle()) {
     const auto what = [&] {
         return fmt::format("allocate a buffer of {} on '{}'", format_bytes(capacity), device.info().name);
     };
@@ -38,31 +42,17 @@ Buffer::Resource::Resource(Device& owner, std::size_t capacity)
     info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
                  VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
                  VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    check(vkCreateBuffer(device.handle(), &info, nullptr, buffer.put()), what);
+    check(vkCreateBuffer(device.handle(), &info, nullptr, owned.put()), what);
+    handle = owned.get();
     VkMemoryRequirements needs{};
-    vkGetBufferMemoryRequirements(device.handle(), buffer.get(), &needs);
+    vkGetBufferMemoryRequirements(device.handle(), handle, &needs);
     const bool maps = device.switches().maps_memory;
     const std::uint32_t type =
         device.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, maps ? k_mapped_properties : 0);
     check(device.memory().allocate(needs, type, MemoryContent::buffer, memory), what);
-    check(vkBindBufferMemory(device.handle(), buffer.get(), memory.memory(), memory.offset()), what);
+    check(vkBindBufferMemory(device.handle(), handle, memory.memory(), memory.offset()), what);
     device.host_work().add(HostTask::buffer);
     if (maps && (device.memory_properties(type) & k_mapped_properties) == k_mapped_properties) mapped = memory.mapped();
-}
-
-VkBufferView Buffer::Resource::view(VkFormat format, VkDeviceSize offset, VkDeviceSize range) {
-    const std::lock_guard lock(mutex_);
-    for (const View& view : views_)
-        if (view.format == format && view.offset == offset && view.range == range) return view.handle.get();
-    auto info = empty_structure<VkBufferViewCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO);
-    info.buffer = buffer.get();
-    info.format = format;
-    info.offset = offset;
-    info.range = range;
-    UniqueBufferView view(device.handle());
-    check(vkCreateBufferView(device.handle(), &info, nullptr, view.put()), "make a view of a buffer");
-    device.host_work().add(HostTask::view);
-    return views_.emplace_back(format, offset, range, std::move(view)).handle.get();
 }
 
 Buffer::Buffer(Device& device, std::size_t bytes) : bytes_(bytes) {
@@ -74,6 +64,13 @@ Buffer::Buffer(Device& device, std::size_t bytes) : bytes_(bytes) {
     const std::size_t capacity = std::max<std::size_t>((bytes + 15) / 16 * 16, 16);
     resource_ = std::make_shared<Resource>(device, capacity);
     if (device.switches().poisons) poison(capacity);
+}
+
+Buffer Buffer::borrow(Device& device, VkBuffer handle, std::size_t bytes) {
+    Buffer buffer;
+    buffer.bytes_ = bytes;
+    buffer.resource_ = std::make_shared<Resource>(device, handle, bytes);
+    return buffer;
 }
 
 void Buffer::poison(std::size_t capacity) {

@@ -1,15 +1,13 @@
 #pragma once
 
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <type_traits>
-#include <vector>
 
 #include "gpu/runtime/device/commands.h"
 #include "gpu/runtime/device/memory_allocator.h"
@@ -40,8 +38,13 @@ class Buffer {
         return buffer;
     }
 
+    /// A buffer of the caller's with `bytes` bytes. It needs VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, and as an input of
+    /// kernels also VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, for transfers their bits, and must outlive all work that
+    /// uses it. Memory barriers of streams cover it; the caller's own work must be ordered before and after theirs.
+    static Buffer borrow(Device& device, VkBuffer handle, std::size_t bytes);
+
     std::size_t bytes() const { return bytes_; }
-    VkBuffer handle() const { return resource_ ? resource_->buffer.get() : VK_NULL_HANDLE; }
+    VkBuffer handle() const { return resource_ ? resource_->handle : VK_NULL_HANDLE; }
     explicit operator bool() const { return resource_ != nullptr; }
 
     /// Waits for all submitted work that uses the buffer, then writes `values` at byte `offset` and returns. Work
@@ -60,31 +63,22 @@ class Buffer {
     void write(std::span<const std::byte> data, std::size_t offset);
     void read(std::span<std::byte> data, std::size_t offset) const;
 
-    /// The Vulkan objects behind a buffer. Any thread may use them.
-    class Resource {
-      public:
-        Resource(Device& owner, std::size_t capacity);
+    /// The Vulkan objects behind a buffer.
+    struct Resource {
+        Resource(Device& owner, std::size_t size);
+        Resource(Device& owner, VkBuffer borrowed, std::size_t size);
         Resource(const Resource&) = delete;
         Resource& operator=(const Resource&) = delete;
-        /// Returns a view of texels, made at the first call and kept.
-        VkBufferView view(VkFormat format, VkDeviceSize offset, VkDeviceSize range);
 
         Device& device;
-        const std::uint64_t id;  ///< of no other buffer, not even of one that takes the place of this one
-        MemoryPart memory;       // returned after the buffer in it
-        UniqueBuffer buffer;
+        const std::uint64_t id;      ///< of no other buffer, not even of one that takes the place of this one
+        const std::size_t capacity;  ///< bytes, from which a binding may extend beyond the buffer's own
+        MemoryPart memory;           // returned after the buffer in it
+        UniqueBuffer owned;          // none if the buffer is the caller's
+        VkBuffer handle = VK_NULL_HANDLE;
         std::byte* mapped = nullptr;             ///< null if the host does not see the memory
         std::atomic<std::uint32_t> streams = 0;  ///< streams that have recorded a use and are not done
         std::atomic<Ticket> last_use = 0;        ///< the last submission that uses it
-
-      private:
-        struct View {
-            VkFormat format;
-            VkDeviceSize offset, range;
-            UniqueBufferView handle;
-        };
-        std::mutex mutex_;
-        std::vector<View> views_;
     };
     const std::shared_ptr<Resource>& resource() const { return resource_; }
 

@@ -9,6 +9,7 @@
 
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 
 namespace exemplar {
 namespace {
@@ -50,11 +51,12 @@ void check_binding(const Program& program, const ReflectedBinding& binding, cons
 // Converts a range for Vulkan. Empty ranges still need an address. A range that ends its buffer is extended to a
 // multiple of 16 bytes, for kernels that read four values at once.
 VkDescriptorBufferInfo bound_range(const ReflectedBinding& binding, const BufferRange& range, const DeviceInfo& info) {
-    if (range.bytes == 0) return {range.buffer->handle(), 0, k_min_bytes};
+    const std::uint64_t capacity = range.buffer->resource()->capacity;
+    if (range.bytes == 0) return {range.buffer->handle(), 0, std::min(k_min_bytes, capacity)};
     const std::uint64_t end = range.offset + range.bytes;
     const bool last = end == range.buffer->bytes();
-    // The end is rounded, not the length: buffers end at a multiple of 16 bytes, but ranges may begin at any.
-    const std::uint64_t padded = (end + k_min_bytes - 1) / k_min_bytes * k_min_bytes - range.offset;
+    // The end is rounded, not the length: own buffers end at a multiple of 16 bytes, but ranges may begin at any.
+    const std::uint64_t padded = std::min((end + k_min_bytes - 1) / k_min_bytes * k_min_bytes, capacity) - range.offset;
     const std::uint64_t bytes = last ? std::min(padded, limits_of(binding, info).bytes) : range.bytes;
     const bool whole_texels = binding.type == BindingType::texels;
     return {range.buffer->handle(), range.offset, whole_texels ? bytes / binding.stride * binding.stride : bytes};
@@ -78,11 +80,11 @@ void Descriptors::bind(VkCommandBuffer commands, const Program& program, std::sp
     if (found == sets_.end()) found = sets_.emplace(key_, write(program, ranges)).first;
     const bool computes = program.stages == VK_SHADER_STAGE_COMPUTE_BIT;
     vkCmdBindDescriptorSets(commands, computes ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS,
-                            program.layout.get(), 0, 1, &found->second, 0, nullptr);
+                            program.layout.get(), 0, 1, &found->second.handle, 0, nullptr);
 }
 
-VkDescriptorSet Descriptors::write(const Program& program, std::span<const BufferRange> ranges) {
-    const VkDescriptorSet set = allocate(program.set_layout.get());
+Descriptors::Set Descriptors::write(const Program& program, std::span<const BufferRange> ranges) {
+    Set set{.handle = allocate(program.set_layout.get()), .views = {}};
     std::vector<VkDescriptorBufferInfo> infos(ranges.size());
     std::vector<VkBufferView> views(ranges.size());
     std::vector<VkWriteDescriptorSet> writes(ranges.size());
@@ -90,12 +92,12 @@ VkDescriptorSet Descriptors::write(const Program& program, std::span<const Buffe
         const ReflectedBinding& binding = program.reflection.bindings[i];
         infos[i] = bound_range(binding, ranges[i], device_.info());
         writes[i] = empty_structure<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
-        writes[i].dstSet = set;
+        writes[i].dstSet = set.handle;
         writes[i].dstBinding = binding.binding;
         writes[i].descriptorCount = 1;
         writes[i].descriptorType = descriptor_type(binding.type);
         if (binding.type == BindingType::texels) {
-            views[i] = ranges[i].buffer->resource()->view(binding.format, infos[i].offset, infos[i].range);
+            views[i] = set.views.emplace_back(texel_view(binding, infos[i])).get();
             writes[i].pTexelBufferView = &views[i];
         } else {
             writes[i].pBufferInfo = &infos[i];
@@ -104,6 +106,18 @@ VkDescriptorSet Descriptors::write(const Program& program, std::span<const Buffe
     vkUpdateDescriptorSets(device_.handle(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
     device_.host_work().add(HostTask::descriptor_set);
     return set;
+}
+
+UniqueBufferView Descriptors::texel_view(const ReflectedBinding& binding, const VkDescriptorBufferInfo& range) {
+    auto info = empty_structure<VkBufferViewCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO);
+    info.buffer = range.buffer;
+    info.format = binding.format;
+    info.offset = range.offset;
+    info.range = range.range;
+    UniqueBufferView view(device_.handle());
+    check(vkCreateBufferView(device_.handle(), &info, nullptr, view.put()), "make a view of a buffer");
+    device_.host_work().add(HostTask::view);
+    return view;
 }
 
 void Descriptors::add_pool() {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -35,13 +35,18 @@ class Descriptors {
   private:
     // The program, and buffer, offset and bytes of each binding, by numbers that are never used twice.
     using Key = std::vector<std::uint64_t>;
+    struct Set {
+        VkDescriptorSet handle;
+        std::vector<UniqueBufferView> views;  // of its texels
+    };
     void add_pool();
     VkDescriptorSet allocate(VkDescriptorSetLayout layout);
-    VkDescriptorSet write(const Program& program, std::span<const BufferRange> ranges);
+    Set write(const Program& program, std::span<const BufferRange> ranges);
+    UniqueBufferView texel_view(const ReflectedBinding& binding, const VkDescriptorBufferInfo& range);
     Device& device_;
     std::vector<UniqueDescriptorPool> pools_;
     std::size_t current_pool_ = 0;
-    std::map<Key, VkDescriptorSet> sets_;
+    std::map<Key, Set> sets_;
     Key key_;  // of the set that is looked for; a member so that its memory is kept
 };
 

@@ -1,6 +1,7 @@
 #include "gpu/runtime/record/image_layout.h"
 
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 
 namespace exemplar {
 

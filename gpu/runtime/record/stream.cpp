@@ -9,6 +9,7 @@
 
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/functions.h"
 
 namespace exemplar {
 namespace {
@@ -132,8 +133,35 @@ Stream::~Stream() {
 
 // Starts a recording unless it has started.
 void Stream::start() {
+    if (external_state_ == External::recording) return;
+    if (external_state_ == External::recorded)
+        throw DeviceError("a stream was used before the caller's commands were done; call retire() first");
     if (commands_.state() == Commands::State::idle) barriers_.clear();
     commands_.begin();
+}
+
+void Stream::record_into(VkCommandBuffer commands) {
+    if (external_ || commands_.state() != Commands::State::idle)
+        throw DeviceError("a stream that has recorded work cannot record into other commands; finish it first");
+    barriers_.clear();
+    external_ = commands;
+    external_state_ = External::recording;
+    record_full_barrier(external_);
+}
+
+void Stream::end_recording() {
+    if (external_state_ != External::recording)
+        throw DeviceError("a stream that records into no command buffer of the caller's cannot end that");
+    record_copies();
+    record_full_barrier(external_);
+    external_state_ = External::recorded;
+}
+
+void Stream::retire() {
+    if (!external_) return;
+    external_ = VK_NULL_HANDLE;
+    external_state_ = External::none;
+    deliver();
 }
 
 // Begins the next command: copies that were collected come before it.
@@ -160,7 +188,7 @@ void Stream::order(std::span<const Access> accesses) {
     auto dependency = empty_structure<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
     dependency.memoryBarrierCount = 1;
     dependency.pMemoryBarriers = &all;
-    vkCmdPipelineBarrier2(commands_.handle(), &dependency);
+    vkCmdPipelineBarrier2(commands(), &dependency);
     device_.host_work().add(HostTask::barrier);
     barriers_.insert(barriers_.end(), barriers.begin(), barriers.end());
 }
@@ -176,12 +204,12 @@ void Stream::prepare(const Kernel& kernel, std::span<const BufferRange> ranges, 
     }
     programs_.insert(kernel.program());
     order(accesses);
-    vkCmdBindPipeline(commands_.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline.get());
-    descriptors_.bind(commands_.handle(), program, ranges);
+    vkCmdBindPipeline(commands(), VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline.get());
+    descriptors_.bind(commands(), program, ranges);
     if (!push.empty())
-        vkCmdPushConstants(commands_.handle(), program.layout.get(), program.stages, 0,
-                           static_cast<std::uint32_t>(push.size()), push.data());
-    timestamps_.start(commands_.handle(), program.name);
+        vkCmdPushConstants(commands(), program.layout.get(), program.stages, 0, static_cast<std::uint32_t>(push.size()),
+                           push.data());
+    timestamps_.start(commands(), program.name);
 }
 
 void Stream::dispatch_bytes(const Kernel& kernel, Threads threads, std::span<const BufferRange> ranges,
@@ -192,9 +220,9 @@ void Stream::dispatch_bytes(const Kernel& kernel, Threads threads, std::span<con
     const std::array<std::uint32_t, 3> groups = workgroups(kernel, threads, device_.info());
     begin();
     prepare(kernel, ranges, push, {});
-    vkCmdDispatch(commands_.handle(), groups[0], groups[1], groups[2]);
+    vkCmdDispatch(commands(), groups[0], groups[1], groups[2]);
     device_.host_work().add(HostTask::dispatch);
-    timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+    timestamps_.stop(commands(), VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
 void Stream::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& arguments, std::size_t offset,
@@ -205,9 +233,9 @@ void Stream::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& argumen
     begin();
     use(arguments);
     prepare(kernel, ranges, push, {indirect_read(arguments)});
-    vkCmdDispatchIndirect(commands_.handle(), arguments.handle(), offset);
+    vkCmdDispatchIndirect(commands(), arguments.handle(), offset);
     device_.host_work().add(HostTask::dispatch);
-    timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+    timestamps_.stop(commands(), VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
 void Stream::render(const Pass& pass) {
@@ -237,26 +265,26 @@ void Stream::render(const Pass& pass) {
     }
     // Within a pass there can be no barriers.
     order(accesses);
-    timestamps_.start(commands_.handle(), pass.name());
-    begin_rendering(commands_.handle(), pass.target());
+    timestamps_.start(commands(), pass.name());
+    begin_rendering(commands(), pass.target());
     for (const Pass::Item& item : pass.items()) {
         const Program& program = *item.program;
-        vkCmdBindPipeline(commands_.handle(), VK_PIPELINE_BIND_POINT_GRAPHICS, program.pipeline.get());
-        descriptors_.bind(commands_.handle(), program, item.bindings);
+        vkCmdBindPipeline(commands(), VK_PIPELINE_BIND_POINT_GRAPHICS, program.pipeline.get());
+        descriptors_.bind(commands(), program, item.bindings);
         if (!item.push.empty())
-            vkCmdPushConstants(commands_.handle(), program.layout.get(), program.stages, 0,
+            vkCmdPushConstants(commands(), program.layout.get(), program.stages, 0,
                                static_cast<std::uint32_t>(item.push.size()), item.push.data());
-        record_draw(commands_.handle(), item.draw, pass.target().extent);
+        record_draw(commands(), item.draw, pass.target().extent);
     }
-    vkCmdEndRendering(commands_.handle());
+    vkCmdEndRendering(commands());
     device_.host_work().add(HostTask::pass);
-    timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT);
+    timestamps_.stop(commands(), VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT);
 }
 
 void Stream::transition(VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to,
                         const Transition& transition) {
     begin();
-    change_layout(commands_.handle(), image, aspect, from, to, transition);
+    change_layout(commands(), image, aspect, from, to, transition);
 }
 
 void Stream::copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::size_t texel_bytes,
@@ -265,7 +293,7 @@ void Stream::copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D ext
     begin();
     use(target);
     order(std::array{copy_write(target)});
-    copy_texels(commands_.handle(), image, aspect, extent, target.handle(), 0);
+    copy_texels(commands(), image, aspect, extent, target.handle(), 0);
 }
 
 void Stream::download_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::span<std::byte> target) {
@@ -273,7 +301,7 @@ void Stream::download_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D
     device_.host_work().add(HostTask::byte_down, target.size());
     begin();
     const auto [block, first] = stage(readbacks_, target.size(), StagingUse::readback);
-    copy_texels(commands_.handle(), image, aspect, extent, block->buffer.get(), first);
+    copy_texels(commands(), image, aspect, extent, block->buffer.get(), first);
     downloads_.push_back({block->mapped() + first, target});
 }
 
@@ -289,7 +317,7 @@ void Stream::blit(VkImage source, VkExtent2D extent, VkImage target, VkRect2D pa
     region.dstOffsets[1] =
         corner(std::int64_t{part.offset.x} + part.extent.width, std::int64_t{part.offset.y} + part.extent.height, 1);
     const bool scales = extent.width != part.extent.width || extent.height != part.extent.height;
-    vkCmdBlitImage(commands_.handle(), source, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target,
+    vkCmdBlitImage(commands(), source, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target,
                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, scales ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
 }
 
@@ -386,8 +414,8 @@ void Stream::add_copy(VkBuffer source, VkBuffer target, const VkBufferCopy& regi
 
 void Stream::record_copies() {
     if (copies_.regions.empty()) return;
-    vkCmdCopyBuffer(commands_.handle(), copies_.source, copies_.target,
-                    static_cast<std::uint32_t>(copies_.regions.size()), copies_.regions.data());
+    vkCmdCopyBuffer(commands(), copies_.source, copies_.target, static_cast<std::uint32_t>(copies_.regions.size()),
+                    copies_.regions.data());
     device_.host_work().add(HostTask::copy);
     device_.host_work().add(HostTask::copied_region, copies_.regions.size());
     copies_.regions.clear();
@@ -398,10 +426,11 @@ void Stream::fill(const Buffer& target, std::uint32_t word) {
     begin();
     use(target);
     order(std::array{copy_write(target)});
-    vkCmdFillBuffer(commands_.handle(), target.handle(), 0, VK_WHOLE_SIZE, word);
+    vkCmdFillBuffer(commands(), target.handle(), 0, VK_WHOLE_SIZE, word);
 }
 
 Ticket Stream::submit(const SubmitOrder& order) {
+    if (external_) throw DeviceError("the caller submits its own commands; call end_recording() and retire()");
     begin();
     try {
         const Ticket ticket = commands_.submit(order);
@@ -416,6 +445,11 @@ Ticket Stream::submit(const SubmitOrder& order) {
 void Stream::wait() {
     if (commands_.state() != Commands::State::submitted) return;
     commands_.wait();
+    deliver();
+}
+
+// Copies downloads of finished work to where they go, and releases what it used.
+void Stream::deliver() {
     for (const Download& download : downloads_)
         std::memcpy(download.target.data(), download.source, download.target.size());
     timestamps_.collect();
@@ -436,6 +470,11 @@ void Stream::fetch(const Buffer& source, std::span<const HostReadback> parts) {
 
 void Stream::fetch(std::span<const BufferReadback> parts) {
     const auto mapped = [](const BufferReadback& part) { return *part.source && part.source->resource()->mapped; };
+    // One block for all, so that the parts of a buffer are one copy.
+    std::size_t staged = 0;
+    for (const BufferReadback& part : parts)
+        if (!mapped(part)) staged += part.target.size() + k_staging_alignment;
+    if (staged > 0) readbacks_.push_back(device_.staging().lend(staged, StagingUse::readback));
     for (const BufferReadback& part : parts)
         if (!mapped(part)) download_bytes(*part.source, part.target, part.offset);
     finish();

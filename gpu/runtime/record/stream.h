@@ -1,6 +1,6 @@
 #pragma once
 
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -125,6 +125,16 @@ class Stream {
     /// Sets every 4 bytes of the buffer to `word`.
     void fill(const Buffer& target, std::uint32_t word);
 
+    /// Records into a command buffer of the caller's from now on, which must be recording, outside of a render pass,
+    /// and belong to the device's queue family. Begins with a barrier: what the caller recorded or submitted before is
+    /// seen. Nothing may be recorded or in flight. If a call throws afterwards, what was recorded before stays valid.
+    void record_into(VkCommandBuffer commands);
+    /// Ends that with a barrier: what the caller records or submits next sees the results. The caller submits. Then
+    /// retire() must be called, once the device has finished the commands or the caller has dropped them.
+    void end_recording();
+    /// Delivers downloads and frees what the caller's commands needed.
+    void retire();
+
     /// Submits the recorded work and returns at once; nothing may be recorded until wait(). Returns the submission's
     /// ticket for Device::wait.
     Ticket submit(const SubmitOrder& order = {});
@@ -167,8 +177,11 @@ class Stream {
         std::vector<VkBufferCopy> regions{};
     };
 
+    enum class External { none, recording, recorded };
     void start();
     void begin();
+    VkCommandBuffer commands() const { return external_ ? external_ : commands_.handle(); }
+    void deliver();
     void release();
     void use(const Buffer& buffer);
     void prepare(const Kernel& kernel, std::span<const BufferRange> bindings, std::span<const std::byte> push,
@@ -194,6 +207,17 @@ class Stream {
     Descriptors descriptors_;
     Timestamps timestamps_;
     Commands commands_;
+    VkCommandBuffer external_ = VK_NULL_HANDLE;  // the caller's
+    External external_state_ = External::none;
 };
+
+/// Returns a buffer that holds `values` once the work that `stream` records next runs. Unlike Buffer::of, it costs no
+/// submission of its own.
+template <typename T>
+Buffer uploaded(Device& device, Stream& stream, std::span<const T> values) {
+    Buffer buffer(device, values.size_bytes());
+    stream.upload(buffer, values);
+    return buffer;
+}
 
 }  // namespace exemplar

@@ -128,6 +128,15 @@ struct PixelFeatures::Computed {
 
 namespace {
 
+/// What a feature of lines comes from.
+struct LineFeature {
+    std::size_t kind, threshold, sigma;
+};
+LineFeature line_feature(std::size_t feature) {
+    const std::size_t place = feature - k_first_line, line = place / k_line_sigmas.size();
+    return {line / k_line_thresholds, line % k_line_thresholds, place % k_line_sigmas.size()};
+}
+
 /// The computation that a feature comes from.
 enum class Source { curvature, descriptors, picture, parts };
 Source source_of(std::size_t feature) {
@@ -327,18 +336,33 @@ const ImageStack& PixelFeatures::line_drawings(std::size_t kind) {
     return *kept;
 }
 
-std::span<const float> PixelFeatures::line_image(std::size_t line, std::size_t sigma) {
-    const std::size_t kind = line / k_line_thresholds;
-    auto& kept = computed_->line_images[kind][sigma];
-    if (!kept) kept = tools_.filters.blurred(line_drawings(kind), std::max(k_min_sigma, scale_ * k_line_sigmas[sigma]));
-    return kept->image(line % k_line_thresholds);
+/// Computes the blurred images of lines that features need, all of one kind at once, as a device waits after each call.
+void PixelFeatures::blur_lines(std::span<const std::uint32_t> features) {
+    std::array<std::array<bool, k_line_sigmas.size()>, k_line_kinds> missing{};
+    for (const std::uint32_t feature : features) {
+        if (feature < k_first_line || feature >= k_pixel_features) continue;
+        const LineFeature line = line_feature(feature);
+        missing[line.kind][line.sigma] = !computed_->line_images[line.kind][line.sigma];
+    }
+    for (std::size_t kind = 0; kind < k_line_kinds; ++kind) {
+        std::vector<std::size_t> places;
+        std::vector<float> sigmas;
+        for (std::size_t sigma = 0; sigma < k_line_sigmas.size(); ++sigma) {
+            if (!missing[kind][sigma]) continue;
+            places.push_back(sigma);
+            sigmas.push_back(std::max(k_min_sigma, scale_ * k_line_sigmas[sigma]));
+        }
+        if (places.empty()) continue;
+        std::vector<ImageStack> blurred = tools_.filters.blurred(line_drawings(kind), sigmas);
+        for (std::size_t i = 0; i < places.size(); ++i) computed_->line_images[kind][places[i]] = std::move(blurred[i]);
+    }
 }
 
 void PixelFeatures::picture_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out) {
     const Gatherer gatherer(*this, rows);
     if (feature >= k_first_line) {
-        const std::size_t line = (feature - k_first_line) / k_line_sigmas.size();
-        const std::span<const float> image = line_image(line, (feature - k_first_line) % k_line_sigmas.size());
+        const LineFeature line = line_feature(feature);
+        const std::span<const float> image = computed_->line_images[line.kind][line.sigma]->image(line.threshold);
         // Length of lines per area.
         return gatherer.from_pixels([&](std::uint32_t pixel) { return scale_ * image[pixel]; }, out);
     }
@@ -416,6 +440,7 @@ FeatureMatrix PixelFeatures::scalars(std::span<const std::uint32_t> which, std::
                                                  : part_feature_name(parts_.at(k - k_pixel_features)));
     out.values.reserve(out.rows * (which.size() + spare));
     out.values.resize(out.rows * which.size());
+    blur_lines(which);
     for (std::size_t first = 0; first < which.size();) {
         const std::span<const std::uint32_t> some = same_source(which.subspan(first));
         const std::span<float> columns(out.values.data() + first * out.rows, some.size() * out.rows);

@@ -75,7 +75,7 @@ class PixelFeatures {
     const ImageStack& shading();
     const ImageDerivatives& derivatives(std::size_t sigma);
     const ImageStack& line_drawings(std::size_t kind);
-    std::span<const float> line_image(std::size_t line, std::size_t sigma);
+    void blur_lines(std::span<const std::uint32_t> features);
     std::vector<DoubledAngle> gradient_directions(std::span<const float> x, std::span<const float> y) const;
     void part_column(std::size_t part, const FacePoints& points, std::span<float> out) const;
     void picture_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out);

@@ -169,6 +169,7 @@ void GpuStrokePlacer::upload_lists(const PlacementGrid& grid, std::span<const Fi
                .points = points,
                .full = 0,
                .held_groups = 0,
+               .seed_groups = {device_.runs_card_kernels() ? trials : groups_of(trials), 1, 1},
                .trial_groups = {groups_of(trials), 1, 1},
                .candidate_groups = {0, 1, 1},
                .place_groups = {0, 1, 1}};
@@ -200,9 +201,10 @@ void GpuStrokePlacer::upload_kept(std::span<const FineStroke> kept) {
 
 void GpuStrokePlacer::record_round(std::uint32_t rounds_left) {
     parameters_.rounds_left = rounds_left;
-    constexpr std::size_t k_trials = offsetof(PlacementCounts, trial_groups),
+    constexpr std::size_t k_seeds = offsetof(PlacementCounts, seed_groups),
+                          k_trials = offsetof(PlacementCounts, trial_groups),
                           k_candidates = offsetof(PlacementCounts, candidate_groups);
-    stream_.dispatch_indirect(seed_, count_buffer_, k_trials, {grid_, near_, points_, lists_, trials_, count_buffer_},
+    stream_.dispatch_indirect(seed_, count_buffer_, k_seeds, {grid_, near_, points_, lists_, trials_, count_buffer_},
                               parameters_);
     stream_.dispatch_indirect(trace_, count_buffer_, k_trials, {grid_, near_, lists_, trials_, ways_, count_buffer_},
                               parameters_);

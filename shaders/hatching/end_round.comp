@@ -125,6 +125,11 @@ uint missing_room(Round round) {
 
 void set_groups(uint placing) {
     counts.trial_groups[0] = (counts.trials + k_hatch_group - 1u) / k_hatch_group;
+#ifdef EXEMPLAR_CPU
+    counts.seed_groups[0] = counts.trial_groups[0];
+#else
+    counts.seed_groups[0] = counts.trials;
+#endif
     counts.candidate_groups[0] = 0u;
     counts.place_groups[0] = placing;
 }
@@ -166,5 +171,6 @@ void main() {
         counts.held_groups = placing;
         set_groups(0u);
         counts.trial_groups[0] = 0u;
+        counts.seed_groups[0] = 0u;
     }
 }

@@ -89,6 +89,7 @@ struct PlacementCounts {
     uint points;
     uint full;         // flags of buffers too small for what this round would place: its end is to be repeated
     uint held_groups;  // candidate_groups[0] while `full` is set
+    uint seed_groups[3];  // of seed.comp: on cards one for each trial, else one for k_hatch_group trials
     uint trial_groups[3];
     uint candidate_groups[3];  // trials with a traced stroke, and how many workgroups share the pixels of each
     uint place_groups[3];
@@ -113,8 +114,8 @@ EXEMPLAR_LAYOUT(PlacementParameters, width, height, seed, test_share, hole_share
 EXEMPLAR_LAYOUT(SeedQueueRecord, kind, first, second, next)
 EXEMPLAR_LAYOUT(TrialRecord, seed_x, seed_y, heading_x, heading_y, state, claim, way_begin, way_count, begin, count,
                 listed, target)
-EXEMPLAR_LAYOUT(PlacementCounts, trials, in_blocks, front, strokes, points, full, held_groups, trial_groups,
-                candidate_groups, place_groups)
+EXEMPLAR_LAYOUT(PlacementCounts, trials, in_blocks, front, strokes, points, full, held_groups, seed_groups,
+                trial_groups, candidate_groups, place_groups)
 EXEMPLAR_LAYOUT(StrokeRecord, first, count, layer, unused)
 #endif
 

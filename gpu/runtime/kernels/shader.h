@@ -10,7 +10,7 @@ namespace exemplar {
 struct Shader {
     std::string_view name;
     std::span<const std::uint32_t> words;      ///< for cards
-    std::span<const std::uint32_t> cpu_words;  ///< for CPU drivers (EXEMPLAR_CPU is defined); often the same
+    std::span<const std::uint32_t> cpu_words{};  ///< for CPU drivers (EXEMPLAR_CPU is defined); often the same
 };
 
 }  // namespace exemplar

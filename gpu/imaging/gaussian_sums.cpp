@@ -42,7 +42,8 @@ SumParameters sum_parameters(const GaussianKernel& kernel, GaussianSums::Axis ax
 // Neighboring invocations have pixels that are near in memory.
 Threads threads_of(const SumParameters& parameters, GaussianSums::Axis axis, std::uint32_t outputs) {
     const std::uint32_t per_line = (parameters.pixels + outputs - 1) / outputs;
-    return axis == GaussianSums::Axis::x ? Threads(per_line, parameters.lines) : Threads(parameters.lines, per_line);
+    return axis == GaussianSums::Axis::x ? Threads(std::uint64_t{per_line} * parameters.lines)
+                                         : Threads(parameters.lines, per_line);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#include "shaders/lib/dispatch.glsl"
 #include "shaders/lib/loops.glsl"
 #include "shaders/lib/tables.glsl"
 #include "shaders/shared/image_filters.h"
@@ -21,7 +22,8 @@ float inside_at(uint line, int place) {
 }
 
 void main() {
-    const uint line = gl_GlobalInvocationID.y, first = gl_GlobalInvocationID.x * k_outputs;
+    const uint thread = linear_thread(), per_line = (parameters.pixels + k_outputs - 1) / k_outputs;
+    const uint line = thread / per_line, first = thread % per_line * k_outputs;
     if (line >= parameters.lines || first >= parameters.pixels) return;
     int next = int(first) - int(parameters.radius);
     float window[k_outputs + 3];

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#include "shaders/lib/dispatch.glsl"
 #include "shaders/lib/loops.glsl"
 #include "shaders/shared/image_filters.h"
 
@@ -27,8 +28,14 @@ vec4 pixel_at(uint line, int place) {
     return place >= 0 && place <= last ? here : vec4(0.0);
 }
 
+// Returns the line of an invocation and its place there, line by line.
+uvec2 place_on_line() {
+    const uint thread = linear_thread(), per_line = (parameters.pixels + k_outputs - 1) / k_outputs;
+    return uvec2(thread / per_line, thread % per_line);
+}
+
 void main() {
-    const uvec2 place = k_along_x ? gl_GlobalInvocationID.yx : gl_GlobalInvocationID.xy;
+    const uvec2 place = k_along_x ? place_on_line() : gl_GlobalInvocationID.xy;
     const uint line = place.x, first = place.y * k_outputs;
     if (line >= parameters.lines || first >= parameters.pixels) return;
     int next = int(first) - int(parameters.radius);  // the pixel to load next

@@ -6,7 +6,7 @@
 
 #include <exception>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/device_memory_error.h"
 #include "python/arrays.h"
 #include "python/bindings.h"

@@ -48,7 +48,7 @@ ROOMS = {
     'host/parts': ['splitting', 'transfer', 'rigging', 'materials', 'prototype'],
     'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'arrangements', 'hatching'],
     'gpu/curvature': ['surface', 'learned', ''],
-    'gpu/runtime': ['device', 'kernels', 'record', 'measure'],
+    'gpu/runtime': ['vulkan', 'device', 'kernels', 'record', 'measure'],
     'apps/bench': ['kernels', 'spirv', ''],
     'apps/exemplar': ['', 'parts', 'label', 'category', 'catalog', 'batch', 'curvature', 'lines', 'hatch', 'bench', 'demo'],
     'apps/viewer': ['controls', 'painting', 'scene', 'window', ''],

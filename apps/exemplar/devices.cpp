@@ -9,7 +9,7 @@
 
 #include "apps/exemplar/commands.h"
 #include "gpu/runtime/device/device_info.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 
 namespace exemplar {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "apps/bench/kernels/operation.h"
 #include "apps/exemplar/commands.h"
-#include "gpu/runtime/device/errors.h"
 #include "gpu/runtime/measure/setup_check.h"
+#include "gpu/runtime/vulkan/errors.h"
 
 namespace exemplar {
 namespace {

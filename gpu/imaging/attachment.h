@@ -2,8 +2,8 @@
 
 #include <vulkan/vulkan_core.h>
 
-#include "gpu/runtime/device/memory_allocator.h"
-#include "gpu/runtime/device/unique_handle.h"
+#include "gpu/runtime/vulkan/memory_allocator.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
 namespace exemplar {
 

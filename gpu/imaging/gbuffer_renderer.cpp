@@ -10,7 +10,7 @@
 #include "embedded/imaging_gbuffer_points_comp.h"
 #include "embedded/imaging_gbuffer_vert.h"
 #include "gpu/imaging/picture.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "shaders/shared/gbuffer.h"
 
 namespace exemplar {

@@ -11,7 +11,7 @@
 #include "embedded/imaging_pack_comp.h"
 #include "embedded/imaging_structure_comp.h"
 #include "embedded/imaging_unpack_comp.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/imaging/scan_conversion.h"
 #include "shaders/shared/image_filters.h"
 

@@ -8,7 +8,7 @@
 #include "embedded/imaging_mesh_vert.h"
 #include "embedded/imaging_resolve_comp.h"
 #include "gpu/imaging/picture.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "shaders/shared/render.h"
 
 namespace exemplar {

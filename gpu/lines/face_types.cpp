@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 
 namespace exemplar {
 

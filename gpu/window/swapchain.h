@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gpu/runtime/device/commands.h"
-#include "gpu/runtime/device/unique_handle.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
 namespace exemplar {
 

@@ -11,7 +11,7 @@
 #include "embedded/window_interface_frag.h"
 #include "embedded/window_interface_vert.h"
 #include "gpu/runtime/device/device.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 
 namespace exemplar {
 namespace {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/stopwatch.h"
 
 namespace exemplar {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "tests/gpu/support/texels.h"
 
 namespace exemplar {

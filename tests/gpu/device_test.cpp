@@ -13,10 +13,10 @@
 #include <utility>
 
 #include "embedded/tests_affine_comp.h"
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/kernels/kernel.h"
 #include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 #include "host/core/files.h"
 #include "shaders/shared/test_kernels.h"
 #include "tests/gpu/support/environment.h"

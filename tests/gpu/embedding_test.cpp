@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "embedded/tests_affine_comp.h"
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/record/shared_memory.h"
 #include "gpu/runtime/record/stream.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 #include "shaders/shared/test_kernels.h"
 #include "tests/gpu/support/environment.h"
 

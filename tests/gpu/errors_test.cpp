@@ -1,4 +1,4 @@
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "gpu/runtime/device/memory_allocator.h"
+#include "gpu/runtime/vulkan/memory_allocator.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/record/stream.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 #include "tests/gpu/support/environment.h"
 
 namespace exemplar {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "gpu/imaging/mesh_renderer.h"
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 #include "host/core/random.h"
 #include "host/imaging/raster.h"
 #include "tests/gpu/support/environment.h"

@@ -8,7 +8,7 @@
 
 #include "embedded/tests_affine_comp.h"
 #include "embedded/tests_weigh_comp.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "shaders/shared/test_kernels.h"
 #include "tests/gpu/support/environment.h"
 

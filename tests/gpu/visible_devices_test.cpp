@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 
 namespace exemplar {
 namespace {

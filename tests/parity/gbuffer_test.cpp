@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "gpu/imaging/gbuffer_renderer.h"
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 #include "host/core/random.h"
 #include "host/imaging/gbuffer.h"
 #include "tests/gpu/support/environment.h"

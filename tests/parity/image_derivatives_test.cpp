@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gpu/imaging/image_derivatives.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/random.h"
 #include "host/imaging/image_derivatives.h"
 #include "host/imaging/scan_conversion.h"

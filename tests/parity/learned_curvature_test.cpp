@@ -13,7 +13,7 @@
 #include "gpu/curvature/learned/local_state.h"
 #include "gpu/curvature/surface/normals.h"
 #include "gpu/curvature/surface/poser.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 #include "host/curvature/learning/model_builder.h"
 #include "host/curvature/learning/training.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gpu/lines/face_types.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 #include "tests/parity/line_scene.h"
 

@@ -9,7 +9,7 @@
 
 #include "gpu/curvature/surface/normals.h"
 #include "gpu/curvature/surface/vertex_rings.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/surfaces.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gpu/hatching/stroke_placer.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 #include "host/hatching/fields/occlusion_barriers.h"
 #include "tests/gpu/support/environment.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gpu/learn/stump_scorer.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 #include "host/core/random.h"
 #include "host/learn/boosting/boosted_stumps.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "gpu/curvature/learned/tile_layout.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 #include "tests/parity/random_model.h"
 

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "tests/gpu/support/texels.h"
 
 namespace exemplar {

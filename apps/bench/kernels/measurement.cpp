@@ -9,7 +9,7 @@
 
 #include "apps/bench/kernels/references.h"
 #include "apps/bench/kernels/statistics.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/json_text.h"

@@ -7,7 +7,7 @@
 #include <array>
 #include <string>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
 

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "gpu/runtime/device/device.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 
 namespace exemplar {

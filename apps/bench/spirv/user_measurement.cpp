@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "apps/bench/kernels/references.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 
 namespace exemplar {

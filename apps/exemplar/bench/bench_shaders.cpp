@@ -10,7 +10,7 @@
 #include "apps/exemplar/bench/bench_kernel_table.h"
 #include "apps/exemplar/bench/bench_statistics.h"
 #include "apps/exemplar/commands.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"

@@ -8,8 +8,8 @@
 #include "apps/exemplar/bench/bench_kernel_table.h"
 #include "apps/exemplar/bench/spirv_job.h"
 #include "apps/exemplar/commands.h"
-#include "gpu/runtime/device/errors.h"
 #include "gpu/runtime/kernels/capabilities.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 

@@ -13,9 +13,9 @@
 
 #include "apps/bench/kernels/compiler_statistics.h"
 #include "apps/exemplar/run_words.h"
-#include "gpu/runtime/device/errors.h"
 #include "gpu/runtime/kernels/capabilities.h"
 #include "gpu/runtime/measure/setup_check.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/json_text.h"

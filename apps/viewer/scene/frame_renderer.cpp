@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "gpu/imaging/picture.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/imaging/side_by_side.h"
 
 namespace exemplar {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/text.h"
 
 namespace exemplar {

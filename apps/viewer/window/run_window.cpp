@@ -14,7 +14,7 @@
 #include "apps/viewer/window/save_svg.h"
 #include "apps/viewer/window/thumbnails.h"
 #include "apps/viewer/window/window.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "gpu/window/swapchain.h"
 #include "gpu/window/ui_renderer.h"
 #include "host/core/interrupt.h"

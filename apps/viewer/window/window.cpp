@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 
 namespace exemplar {
 namespace {

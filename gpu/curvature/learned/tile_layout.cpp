@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 
 namespace exemplar {

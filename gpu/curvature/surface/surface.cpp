@@ -9,7 +9,7 @@
 
 #include "gpu/curvature/surface/texels.h"
 #include "gpu/curvature/surface/vertex_rings.h"
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 #include "host/core/errors.h"
 
 namespace exemplar {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/vulkan/errors.h"
 
 namespace exemplar {
 

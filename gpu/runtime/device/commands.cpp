@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "gpu/runtime/device/device.h"
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 
 namespace exemplar {
 void record_full_barrier(VkCommandBuffer commands) {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "gpu/runtime/device/unique_handle.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
 namespace exemplar {
 

@@ -14,13 +14,13 @@
 #include "gpu/runtime/device/commands.h"
 #include "gpu/runtime/device/device_info.h"
 #include "gpu/runtime/device/executable_statistics.h"
-#include "gpu/runtime/device/host_work.h"
 #include "gpu/runtime/device/instance.h"
-#include "gpu/runtime/device/memory_allocator.h"
 #include "gpu/runtime/device/pipeline_cache.h"
 #include "gpu/runtime/device/staging_pool.h"
 #include "gpu/runtime/device/switches.h"
 #include "gpu/runtime/device/tuning.h"
+#include "gpu/runtime/vulkan/host_work.h"
+#include "gpu/runtime/vulkan/memory_allocator.h"
 
 namespace exemplar {
 

@@ -7,10 +7,10 @@
 #include <tuple>
 
 #include "gpu/runtime/device/device.h"
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/device/instance.h"
 #include "gpu/runtime/device/visible_devices.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 #include "host/core/text.h"
 
 namespace exemplar {

@@ -9,8 +9,8 @@
 #include <system_error>
 
 #include "gpu/runtime/device/device_cache.h"
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 #include "host/core/files.h"
 
 namespace exemplar {

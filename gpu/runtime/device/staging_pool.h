@@ -7,8 +7,8 @@
 #include <mutex>
 #include <vector>
 
-#include "gpu/runtime/device/memory_allocator.h"
-#include "gpu/runtime/device/unique_handle.h"
+#include "gpu/runtime/vulkan/memory_allocator.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
 namespace exemplar {
 

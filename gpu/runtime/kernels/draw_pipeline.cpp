@@ -6,9 +6,9 @@
 #include <array>
 
 #include "gpu/runtime/device/device.h"
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/device/instance.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 
 namespace exemplar {
 namespace {

@@ -6,8 +6,8 @@
 #include <atomic>
 
 #include "gpu/runtime/device/device.h"
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 
 namespace exemplar {
 namespace {

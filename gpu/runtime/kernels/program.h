@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "gpu/runtime/device/unique_handle.h"
 #include "gpu/runtime/kernels/layout.h"
 #include "gpu/runtime/kernels/reflection.h"
 #include "gpu/runtime/kernels/shader.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
 namespace exemplar {
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "gpu/runtime/device/device_info.h"
-#include "gpu/runtime/device/errors.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/vulkan/errors.h"
 
 namespace exemplar {
 namespace {

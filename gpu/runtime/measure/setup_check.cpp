@@ -13,9 +13,9 @@
 #include <system_error>
 
 #include "gpu/runtime/device/device_cache.h"
-#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/device/pipeline_cache.h"
 #include "gpu/runtime/device/tuning.h"
+#include "gpu/runtime/vulkan/functions.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/json_text.h"

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "gpu/runtime/device/device.h"
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
 #include "gpu/runtime/record/stream.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 
 namespace exemplar {
 namespace {

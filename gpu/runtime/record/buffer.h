@@ -10,8 +10,8 @@
 #include <type_traits>
 
 #include "gpu/runtime/device/commands.h"
-#include "gpu/runtime/device/memory_allocator.h"
-#include "gpu/runtime/device/unique_handle.h"
+#include "gpu/runtime/vulkan/memory_allocator.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
 namespace exemplar {
 

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "gpu/runtime/device/unique_handle.h"
 #include "gpu/runtime/kernels/program.h"
 #include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
 namespace exemplar {
 

@@ -1,7 +1,7 @@
 #include "gpu/runtime/record/image_layout.h"
 
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
 
 namespace exemplar {
 

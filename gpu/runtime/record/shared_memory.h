@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "gpu/runtime/device/unique_handle.h"
 #include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
 namespace exemplar {
 

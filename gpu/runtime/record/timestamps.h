@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "gpu/runtime/device/unique_handle.h"
 #include "gpu/runtime/record/profiler.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
 namespace exemplar {
 

@@ -1,4 +1,4 @@
-#include "gpu/runtime/device/functions.h"
+#include "gpu/runtime/vulkan/functions.h"
 
 #include <dlfcn.h>
 
@@ -8,7 +8,7 @@ namespace exemplar {
 
 #define EXEMPLAR_GLOBAL_FUNCTION(name) PFN_##name name = nullptr;
 #define EXEMPLAR_FUNCTION(name) PFN_##name name = nullptr;
-#include "gpu/runtime/device/functions.def"
+#include "gpu/runtime/vulkan/functions.def"
 #undef EXEMPLAR_GLOBAL_FUNCTION
 #undef EXEMPLAR_FUNCTION
 PFN_vkGetInstanceProcAddr vkGetInstanceProcAddr = nullptr;
@@ -26,7 +26,7 @@ void look_up(PFN_vkGetInstanceProcAddr from, VkInstance instance, const char* na
 void load_global_functions() {
 #define EXEMPLAR_GLOBAL_FUNCTION(name) look_up(vkGetInstanceProcAddr, nullptr, #name, name);
 #define EXEMPLAR_FUNCTION(name)
-#include "gpu/runtime/device/functions.def"
+#include "gpu/runtime/vulkan/functions.def"
 #undef EXEMPLAR_GLOBAL_FUNCTION
 #undef EXEMPLAR_FUNCTION
 }
@@ -61,7 +61,7 @@ void load_vulkan_functions(VkInstance instance, PFN_vkGetInstanceProcAddr from) 
     if (!from) from = vkGetInstanceProcAddr;
 #define EXEMPLAR_GLOBAL_FUNCTION(name)
 #define EXEMPLAR_FUNCTION(name) look_up(from, instance, #name, name);
-#include "gpu/runtime/device/functions.def"
+#include "gpu/runtime/vulkan/functions.def"
 #undef EXEMPLAR_GLOBAL_FUNCTION
 #undef EXEMPLAR_FUNCTION
 }

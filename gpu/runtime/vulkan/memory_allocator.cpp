@@ -1,11 +1,11 @@
-#include "gpu/runtime/device/memory_allocator.h"
+#include "gpu/runtime/vulkan/memory_allocator.h"
 
 #include <algorithm>
 #include <optional>
 
-#include "gpu/runtime/device/errors.h"
-#include "gpu/runtime/device/functions.h"
-#include "gpu/runtime/device/unique_handle.h"
+#include "gpu/runtime/vulkan/errors.h"
+#include "gpu/runtime/vulkan/functions.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
 namespace exemplar {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "gpu/runtime/device/host_work.h"
+#include "gpu/runtime/vulkan/host_work.h"
 
 namespace exemplar {
 

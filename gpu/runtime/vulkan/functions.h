@@ -10,7 +10,7 @@ namespace exemplar {
 
 #define EXEMPLAR_GLOBAL_FUNCTION(name) extern PFN_##name name;
 #define EXEMPLAR_FUNCTION(name) extern PFN_##name name;  // null if it is of an extension that no driver has
-#include "gpu/runtime/device/functions.def"
+#include "gpu/runtime/vulkan/functions.def"
 #undef EXEMPLAR_GLOBAL_FUNCTION
 #undef EXEMPLAR_FUNCTION
 extern PFN_vkGetInstanceProcAddr vkGetInstanceProcAddr;

@@ -1,4 +1,4 @@
-#include "gpu/runtime/device/host_work.h"
+#include "gpu/runtime/vulkan/host_work.h"
 
 namespace exemplar {
 

@@ -1,6 +1,6 @@
-#include "gpu/runtime/device/unique_handle.h"
+#include "gpu/runtime/vulkan/unique_handle.h"
 
-#include "gpu/runtime/device/functions.h"
+#include "gpu/runtime/vulkan/functions.h"
 
 namespace exemplar {
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
-#include <ranges>
 #include <string_view>
 #include <vector>
 
@@ -43,10 +42,12 @@ DeviceInfo* named_card(std::string_view entry, std::span<DeviceInfo* const> card
 // Hides the cards that the value of a variable does not list.
 void keep_listed(std::span<DeviceInfo* const> cards, std::string_view variable, std::string_view value) {
     std::vector<DeviceInfo*> listed;
-    for (const auto entry : std::views::split(value, ',')) {
-        DeviceInfo* card = named_card(std::string_view(entry.begin(), entry.end()), cards);
+    for (std::size_t begin = 0; begin <= value.size();) {
+        const std::size_t end = std::min(value.find(',', begin), value.size());
+        DeviceInfo* card = named_card(value.substr(begin, end - begin), cards);
         if (!card) break;
         listed.push_back(card);
+        begin = end + 1;
     }
     for (DeviceInfo* card : cards)
         if (std::ranges::find(listed, card) == listed.end() && card->unusable.empty())

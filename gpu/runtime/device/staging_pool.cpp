@@ -37,7 +37,8 @@ std::unique_ptr<StagingBlock> StagingPool::make(std::size_t bytes, StagingUse us
     const auto what = [&] {
         return fmt::format("allocate {} of staging memory for '{}'", format_bytes(bytes), device_.info().name);
     };
-    auto block = std::make_unique<StagingBlock>(use, bytes, MemoryPart{}, UniqueBuffer(device_.handle()));
+    auto block = std::make_unique<StagingBlock>(
+        StagingBlock{.use = use, .bytes = bytes, .memory = {}, .buffer = UniqueBuffer(device_.handle())});
     auto info = empty_structure<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
     info.size = bytes;
     info.usage = reads ? VK_BUFFER_USAGE_TRANSFER_DST_BIT : VK_BUFFER_USAGE_TRANSFER_SRC_BIT;

@@ -6,12 +6,14 @@
 
 namespace exemplar {
 
+// NOLINTBEGIN(readability-identifier-naming): these are Vulkan's names.
 #define EXEMPLAR_GLOBAL_FUNCTION(name) PFN_##name name = nullptr;
 #define EXEMPLAR_FUNCTION(name) PFN_##name name = nullptr;
 #include "gpu/runtime/vulkan/functions.def"
 #undef EXEMPLAR_GLOBAL_FUNCTION
 #undef EXEMPLAR_FUNCTION
 PFN_vkGetInstanceProcAddr vkGetInstanceProcAddr = nullptr;
+// NOLINTEND(readability-identifier-naming)
 
 namespace {
 

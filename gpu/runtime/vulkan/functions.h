@@ -8,12 +8,14 @@
 
 namespace exemplar {
 
+// NOLINTBEGIN(readability-identifier-naming): these are Vulkan's names.
 #define EXEMPLAR_GLOBAL_FUNCTION(name) extern PFN_##name name;
 #define EXEMPLAR_FUNCTION(name) extern PFN_##name name;  // null if it is of an extension that no driver has
 #include "gpu/runtime/vulkan/functions.def"
 #undef EXEMPLAR_GLOBAL_FUNCTION
 #undef EXEMPLAR_FUNCTION
 extern PFN_vkGetInstanceProcAddr vkGetInstanceProcAddr;
+// NOLINTEND(readability-identifier-naming)
 
 /// Loads the system's Vulkan loader (libvulkan.so.1) and the global functions; returns false if there is none. Any
 /// thread may call it, again and again.

@@ -89,9 +89,13 @@ VkDeviceSize MemoryAllocator::next_block_bytes(std::uint32_t type, MemoryContent
 }
 
 VkResult MemoryAllocator::add_block(std::uint32_t type, MemoryContent content, VkDeviceSize bytes, Block*& added) {
-    auto block = std::make_unique<Block>(type, content, bytes, UniqueMemory(device_), nullptr,
-                                         std::map<VkDeviceSize, VkDeviceSize>{{0, bytes}},
-                                         std::map<VkDeviceSize, VkDeviceSize>{});
+    auto block = std::make_unique<Block>(Block{.type = type,
+                                               .content = content,
+                                               .bytes = bytes,
+                                               .memory = UniqueMemory(device_),
+                                               .mapped = nullptr,
+                                               .free = {{0, bytes}},
+                                               .used = {}});
     const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                     .pNext = nullptr,
                                     .allocationSize = bytes,

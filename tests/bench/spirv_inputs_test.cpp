@@ -108,7 +108,7 @@ TEST(SpirvInputs, SpecializationConstants) {
 TEST(SpirvInputs, ArraysOfNumpy) {
     const TemporaryFolder folder;
     const auto written = [&](const std::string& content) {
-        const std::filesystem::path path = folder.path() / "a.npy";
+        std::filesystem::path path = folder.path() / "a.npy";
         write_file_atomically(path, [&](std::ostream& out) { out << content; });
         return path;
     };

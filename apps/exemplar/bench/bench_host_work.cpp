@@ -50,6 +50,7 @@ void count_scoring(BenchContext& context, const std::function<void(const BenchRo
     const BoostedStumps classifier = random_stumps(k_stumps, k_counted_columns, k_classes);
     std::vector<std::vector<float>> out(k_counted_meshes, std::vector<float>(k_counted_faces * k_classes));
     std::vector<ScoredMatrix> matrices;
+    matrices.reserve(out.size());
     for (std::vector<float>& probabilities : out) matrices.push_back({&features, probabilities});
     count_tasks(device.device(),
                 {.what = fmt::format("stump scoring, {} meshes of {} faces", k_counted_meshes, k_counted_faces),
@@ -62,6 +63,7 @@ void count_scores(BenchContext& context, const std::function<void(const BenchRow
     const LabelingModel& model = context.model();
     std::vector<MeshFeatures> features(k_counted_meshes, compute_features(context.mesh().mesh));
     std::vector<MeshFeatures*> meshes;
+    meshes.reserve(features.size());
     for (MeshFeatures& mesh : features) meshes.push_back(&mesh);
     count_tasks(
         device.device(),

@@ -21,6 +21,14 @@ VkExtent2D part_of(ViewSize size, std::size_t parts, std::size_t part) {
 
 FrameRenderer::FrameRenderer(Device& device) : device_(device), turns_{Turn(device), Turn(device)}, empty_(device) {}
 
+FrameRenderer::~FrameRenderer() {
+    try {
+        wait();
+    } catch (const DeviceError&) {
+        // A lost device draws nothing to wait for.
+    }
+}
+
 void FrameRenderer::begin(FrameTimes& times) {
     turn_ = 1 - turn_;
     collect(turns_[turn_], times);

@@ -24,6 +24,10 @@ namespace exemplar {
 class FrameRenderer {
   public:
     explicit FrameRenderer(Device& device);
+    /// Waits for all frames in flight.
+    ~FrameRenderer();
+    FrameRenderer(const FrameRenderer&) = delete;
+    FrameRenderer& operator=(const FrameRenderer&) = delete;
 
     /// Begins a frame: waits until only one is in flight, and adds the times of those that are done.
     void begin(FrameTimes& times);

@@ -88,7 +88,7 @@ class Consumer(unittest.TestCase):
             self.skipTest("this build has no programs")
         program = self.prefix / "bin" / "exemplar"
         figure, model = self.folder / "figure_001.glb", self.folder / "figure.safetensors"
-        run(program, "synth", "figure", "--vertices", "1000", "--frames", "12", "--out", self.folder)
+        run(program, "synth", "figure", "--vertices", "1000", "--frames", "24", "--out", self.folder)
         run(program, "curvature", "train", figure, "--out", model, "--augment", "40")
         folder = self.folder / "embed"
         run(CMAKE, "-S", HERE.parent.parent / "examples" / "embed_lines", "-B", folder, f"-DCMAKE_PREFIX_PATH={self.prefix}",
@@ -96,7 +96,7 @@ class Consumer(unittest.TestCase):
         run(CMAKE, "--build", folder)
         # Small enough for a device that has the least that Vulkan asks for. In validation no message is an error.
         options = [figure, model, "--size", "250x240", "--white", "--validate"]
-        run(folder / "embed_lines", *options, "--out", self.folder / "embedded")
+        run(folder / "embed_lines", *options, "--frames", "12", "--out", self.folder / "embedded")
         run(program, "lines", figure, "--model", model, "--types", "contours,suggestive_contours", "--view", "front", "--frames",
             "0:1", "--size", "250x240", "--out", self.folder / "alone.png")
         embedded = sorted((self.folder / "embedded").iterdir())

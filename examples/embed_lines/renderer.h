@@ -35,7 +35,7 @@ struct HostBuffer {
     std::byte* mapped;
 };
 
-/// What one of the frames in flight has of its own.
+/// The resources of one frame in flight.
 struct Frame {
     VkCommandBuffer commands;
     Image color, depth;

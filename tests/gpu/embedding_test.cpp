@@ -132,6 +132,8 @@ TEST(Embedding, RecordsIntoTheCallersCommands) {
     const Kernel kernel = affine_on(device);
     Buffer owned(device, 400), copied(device, 400);  // these stand for buffers of the caller
     const Buffer borrowed = Buffer::borrow(device, owned.handle(), 400);
+    for (const std::size_t odd : {0u, 4u, 399u})
+        EXPECT_THROW(Buffer::borrow(device, owned.handle(), odd), DeviceError) << odd;
     Stream stream(device);
     std::vector<float> before(100, -1.0f), after(100);
     for (int round = 0; round < 3; ++round) {  // sets and staging memory are used again

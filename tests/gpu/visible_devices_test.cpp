@@ -73,6 +73,11 @@ TEST(VisibleDevices, AnEntryThatNamesNoCardEndsTheList) {
     EXPECT_THAT(left_by({{"CUDA_VISIBLE_DEVICES", "GPU-"}}), ElementsAre(3, 4));
 }
 
+TEST(VisibleDevices, PartsOfCardsHideNothing) {
+    EXPECT_THAT(left_by({{"CUDA_VISIBLE_DEVICES", "MIG-81818181-8181-8181-8181-818181818181"}}),
+                ElementsAre(0, 1, 2, 3, 4));
+}
+
 // Slurm's numbers count where the program still sees more cards than it was given.
 TEST(VisibleDevices, SlurmNumbersTheCardsOfANode) {
     EXPECT_THAT(left_by({{"SLURM_JOB_GPUS", "0,2"}}), ElementsAre(1, 3, 4));

@@ -60,7 +60,7 @@ struct Derivatives {
           stream(device, &profiler),
           on_device{images.width, images.height, k_images, Buffer::of<float>(device, images.values)},
           face(Buffer::of<std::uint32_t>(device, faces)) {}
-    // Of images on the device, where the box of the mask is found too.
+    // The images are on the device already, so the device also finds the bounding box of the mask.
     void run() {
         const GpuMaskedImages inside = filters.masked(on_device, face);
         filters.record_derivatives(stream, inside, k_sigma, derivatives);

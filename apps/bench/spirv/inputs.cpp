@@ -187,10 +187,10 @@ void check_contents(const ReflectedBinding& binding, const BlockScalars* scalars
     const std::string given =
         source.kind == BindingSource::Kind::file ? source.path.string() : std::string("what is given");
     const std::string start = fmt::format("--bind {}: {} has {} bytes, ", binding.binding, given, bytes);
-    const std::size_t least = scalars ? scalars->least_bytes() : binding.stride;
-    if (bytes < least)
+    const std::size_t min_bytes = scalars ? scalars->min_bytes() : binding.stride;
+    if (bytes < min_bytes)
         throw UsageError(fmt::format("{}and binding {} '{}' of the shader needs at least {}; give more", start,
-                                     binding.binding, name_of(binding), least));
+                                     binding.binding, name_of(binding), min_bytes));
     const std::size_t head = scalars ? scalars->head_bytes : 0, stride = scalars ? scalars->stride : binding.stride;
     if (stride > 0 && (bytes - head) % stride != 0)
         throw UsageError(fmt::format("{}no whole number of elements of {} bytes{} as binding {} '{}' has them", start,

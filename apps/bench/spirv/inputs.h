@@ -15,7 +15,7 @@
 
 namespace exemplar {
 
-// What a user gives a shader: contents of buffers, push constants and specialization constants, as text.
+// Parses the inputs of a shader from the command line: contents of buffers, push constants, specialization constants.
 
 using Bytes = std::vector<std::byte>;
 

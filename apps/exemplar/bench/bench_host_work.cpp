@@ -65,11 +65,12 @@ void count_scores(BenchContext& context, const std::function<void(const BenchRow
     std::vector<MeshFeatures*> meshes;
     meshes.reserve(features.size());
     for (MeshFeatures& mesh : features) meshes.push_back(&mesh);
-    count_tasks(
-        device.device(),
-        {.what = fmt::format("all scores of {} meshes of {} faces", k_counted_meshes, context.mesh().mesh.face_count()),
-         .goal = "2 submissions"},
-        row, [&] { score_faces(model, meshes, device.labeling()); });
+    count_tasks(device.device(),
+                {.what = fmt::format("all scores of {} meshes of {} faces, {} stages of labels and {} of edges",
+                                     k_counted_meshes, context.mesh().mesh.face_count(), model.unary.size(),
+                                     model.pairwise.size()),
+                 .goal = "2 submissions"},
+                row, [&] { score_faces(model, meshes, device.labeling()); });
 }
 
 void count_features(BenchContext& context, const std::function<void(const BenchRow&)>& row) {

@@ -184,20 +184,11 @@ void add_statistics_options(Command& command, ShaderBenchOptions& options, std::
                          "compile all variants with Mesa's compiler of AMD's cards, and print what it tells of them");
     for (const Option* other : others) statistics->excludes(other);
     command
-        .add_option("--families", options.compiling.families,
-                    "with --statistics: families of cards, as Mesa names them")
-        ->delimiter(',')
-        ->needs(statistics)
-        ->capture_default_str()
-        ->type_name("NAME");
-    command
         .add_option("--times", options.compiling.times,
                     "with --statistics: a report of --json, whose times are printed beside them")
         ->needs(statistics)
         ->type_name("FILE");
-    command.add_flag("--in-this-process", options.in_this_process, "compile with this process's driver")
-        ->needs(statistics)
-        ->hide();
+    add_family_options(command, statistics, options.compiling, options.in_this_process);
 }
 
 }  // namespace

@@ -311,16 +311,7 @@ void add_compiler_options(Command& command, SpirvOptions& options) {
     Option* statistics = command.add_flag("--statistics", options.statistics,
                                           "run nothing: compile with Mesa's compiler of AMD's cards, without a card, "
                                           "and print what it tells of the code");
-    command
-        .add_option("--families", options.compiling.families,
-                    "with --statistics: families of cards, as Mesa names them")
-        ->delimiter(',')
-        ->needs(statistics)
-        ->capture_default_str()
-        ->type_name("NAME");
-    command.add_flag("--in-this-process", options.in_this_process, "compile with this process's driver")
-        ->needs(statistics)
-        ->hide();
+    add_family_options(command, statistics, options.compiling, options.in_this_process);
 }
 
 }  // namespace

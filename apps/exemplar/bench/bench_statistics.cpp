@@ -31,7 +31,8 @@ std::string radv_files() {
     for (const std::filesystem::path& file : driver_files(this_machine())) {
         std::error_code error;
         if (!file.filename().string().starts_with("radeon_icd") || !std::filesystem::exists(file, error)) continue;
-        files += (files.empty() ? "" : ":") + file.string();
+        if (!files.empty()) files += ':';
+        files += file.string();
     }
     if (files.empty())
         throw NoDeviceError(
@@ -159,6 +160,17 @@ void compare_with_baseline(const std::vector<FamilyStatistics>& now, const std::
 }
 
 }  // namespace
+
+void add_family_options(Command& command, Option* statistics, StatisticsOptions& options, bool& in_this_process) {
+    command.add_option("--families", options.families, "with --statistics: families of cards, as Mesa names them")
+        ->delimiter(',')
+        ->needs(statistics)
+        ->capture_default_str()
+        ->type_name("NAME");
+    command.add_flag("--in-this-process", in_this_process, "compile with this process's driver")
+        ->needs(statistics)
+        ->hide();
+}
 
 void run_statistics(const StatisticsOptions& options, const std::vector<std::string>& child) {
     std::vector<FamilyStatistics> before;

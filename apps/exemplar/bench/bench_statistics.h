@@ -17,6 +17,9 @@ struct StatisticsOptions {
     std::vector<std::string> families{"NAVI21", "VEGA10"};
 };
 
+/// Adds --families, and the hidden option of the child process; both need `statistics`, the option --statistics.
+void add_family_options(Command& command, Option* statistics, StatisticsOptions& options, bool& in_this_process);
+
 /// Compiles kernels with Mesa's RADV for each family of graphics cards, whose hardware is not needed, and prints what
 /// the compiler tells of them. `child` are the words after this program's name that make it call
 /// compile_in_this_process. Throws Error if a default variant is worse than in the baseline.

@@ -22,7 +22,7 @@ void set_constants(Constants& constants, const std::string& option, const std::v
                    const ShaderScalars& scalars, const ShaderScalars* others) {
     for (const std::string& text : texts) {
         const ConstantText constant = parse_constant(option, text);
-        // Of two shaders, only one need have it.
+        // One --spec serves both shaders; it may be a constant of the other shader alone.
         if (others && !has_constant(scalars, constant.id) && has_constant(*others, constant.id)) continue;
         const auto bits = constant_bits(option, constant, scalars.constants);
         std::erase_if(constants, [&](const auto& known) { return known.first == bits.first; });

@@ -37,7 +37,7 @@ struct SpirvVersion {
     Bytes push;
 };
 
-/// What is to be measured: one shader, or two with the same inputs.
+/// The shaders to measure: one, or two with the same inputs.
 struct SpirvJob {
     std::vector<SpirvVersion> versions;
     std::vector<BindingSource> sources;

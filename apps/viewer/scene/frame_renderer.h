@@ -54,7 +54,7 @@ class FrameRenderer {
     Device& device() { return device_; }
 
   private:
-    // What one of the frames in flight has of its own.
+    // The resources of one frame in flight.
     struct Turn {
         explicit Turn(Device& device) : stream(device, &profiler) {}
         Profiler profiler;

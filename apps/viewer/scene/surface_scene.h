@@ -36,7 +36,7 @@ class SurfaceScene {
     Canvas& canvas(std::size_t view) { return renderer_->view(view).canvas(); }
 
   private:
-    // What is on the device: while only the camera moves, it stays.
+    // The shape and curvature on the device. They are recorded again only if they change, not if the camera moves.
     struct Recorded {
         SurfaceShape shape;
         CurvatureSource source;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <string>
 #include <string_view>
 
 #include "host/core/errors.h"
@@ -11,27 +10,26 @@
 namespace exemplar {
 namespace {
 
-// Returns whether a variable has the one value that it can have; not if it is empty, "0" or not set.
-bool is_set(const char* variable, std::string_view value) {
+// Returns the value of a variable; empty if it is "0" or not set.
+std::string_view value_of(const char* variable) {
     const char* text = std::getenv(variable);
-    const std::string_view given = text ? text : "";
-    if (given.empty() || given == "0") return false;
-    if (given != value)
-        throw UsageError(
-            fmt::format("{}={:.40}: its only value is '{}'; unset it for the usual", variable, given, value));
-    return true;
+    const std::string_view value = text ? text : "";
+    return value == "0" ? "" : value;
 }
 
-bool wants_validation() {
-    const char* text = std::getenv("EXEMPLAR_VALIDATION");
-    const std::string_view given = text ? text : "";
-    return !given.empty() && given != "0";
+// Returns whether a variable has the one value that it can have.
+bool is_set(const char* variable, std::string_view only) {
+    const std::string_view value = value_of(variable);
+    if (!value.empty() && value != only)
+        throw UsageError(
+            fmt::format("{}={:.40}: its only value is '{}'; unset it for the usual", variable, value, only));
+    return !value.empty();
 }
 
 }  // namespace
 
 DeviceSwitches environment_switches() {
-    return {.validates = wants_validation(),
+    return {.validates = !value_of("EXEMPLAR_VALIDATION").empty(),
             .maps_memory = !is_set("EXEMPLAR_MEMORY", "unmapped"),
             .prefers_host = !is_set("EXEMPLAR_HOST", "never"),
             .prefers_card_kernels = is_set("EXEMPLAR_KERNELS", "card"),

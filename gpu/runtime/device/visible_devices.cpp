@@ -41,6 +41,7 @@ DeviceInfo* named_card(std::string_view entry, std::span<DeviceInfo* const> card
 
 // Hides the cards that the value of a variable does not list.
 void keep_listed(std::span<DeviceInfo* const> cards, std::string_view variable, std::string_view value) {
+    if (value.find("MIG-") != std::string_view::npos) return;
     std::vector<DeviceInfo*> listed;
     for (std::size_t begin = 0; begin <= value.size();) {
         const std::size_t end = std::min(value.find(',', begin), value.size());

@@ -42,7 +42,8 @@ struct BlockScalars {
     std::vector<ReflectedScalar> element;  ///< offsets from the start of an element
     bool complete = true;                  ///< false if there are too many numbers to list, or some of another size
 
-    std::size_t least_bytes() const { return head_bytes + stride * (fixed_count > 0 ? fixed_count : 1); }
+    /// Returns the bytes of a buffer with one element, or with all that the shader declares.
+    std::size_t min_bytes() const { return head_bytes + stride * (fixed_count > 0 ? fixed_count : 1); }
 };
 
 struct ReflectedConstant {

@@ -22,6 +22,8 @@ constexpr VkMemoryPropertyFlags k_mapped_properties =
 // Staged transfers go in pieces, so that they need little memory beside the buffer.
 constexpr std::size_t k_piece_bytes = std::size_t{64} << 20;
 
+constexpr std::size_t k_vector_bytes = 16;
+
 std::uint64_t next_buffer_id() {
     static std::atomic<std::uint64_t> last = 0;
     return ++last;
@@ -29,19 +31,20 @@ std::uint64_t next_buffer_id() {
 
 }  // namespace
 
-Buffer::Resource::Resource(Device& owner, VkBuffer borrowed, std::size_t size)
-    : device(owner), id(next_buffer_id()), capacity(size), handle(borrowed) {}
+std::size_t padded_buffer_bytes(std::size_t bytes) {
+    return std::max((bytes + k_vector_bytes - 1) / k_vector_bytes * k_vector_bytes, k_vector_bytes);
+}
 
-Buffer::Resource::Resource(Device& owner, std::size_t size)
-    : device(owner), id(next_buffer_id()), capacity(size), owned(owner.handle()) {
+Buffer::Resource::Resource(Device& owner, VkBuffer borrowed) : device(owner), id(next_buffer_id()), handle(borrowed) {}
+
+Buffer::Resource::Resource(Device& owner, std::size_t capacity)
+    : device(owner), id(next_buffer_id()), owned(owner.handle()) {
     const auto what = [&] {
         return fmt::format("allocate a buffer of {} on '{}'", format_bytes(capacity), device.info().name);
     };
     auto info = empty_structure<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
     info.size = capacity;
-    info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
-                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    info.usage = k_usage;
     check(vkCreateBuffer(device.handle(), &info, nullptr, owned.put()), what);
     handle = owned.get();
     VkMemoryRequirements needs{};
@@ -60,16 +63,18 @@ Buffer::Buffer(Device& device, std::size_t bytes) : bytes_(bytes) {
         throw DeviceLimitError(fmt::format("a buffer of {} is over the limit of {} of device '{}'; split the work",
                                            format_bytes(bytes), format_bytes(limit), device.info().name),
                                bytes, limit);
-    // Rounded up to 16 bytes: Vulkan has no empty buffers, and kernels may bind the tail of a vec4.
-    const std::size_t capacity = std::max<std::size_t>((bytes + 15) / 16 * 16, 16);
+    const std::size_t capacity = padded_buffer_bytes(bytes);
     resource_ = std::make_shared<Resource>(device, capacity);
     if (device.switches().poisons) poison(capacity);
 }
 
 Buffer Buffer::borrow(Device& device, VkBuffer handle, std::size_t bytes) {
+    if (bytes == 0 || bytes % k_vector_bytes != 0)
+        throw DeviceError(
+            fmt::format("a borrowed buffer of {} bytes; make it a multiple of {}", bytes, k_vector_bytes));
     Buffer buffer;
     buffer.bytes_ = bytes;
-    buffer.resource_ = std::make_shared<Resource>(device, handle, bytes);
+    buffer.resource_ = std::make_shared<Resource>(device, handle);
     return buffer;
 }
 
@@ -85,6 +90,7 @@ void Buffer::poison(std::size_t capacity) {
 }
 
 void Buffer::check_range(std::size_t offset, std::size_t size) const {
+    if (!resource_) throw DeviceError("a buffer without memory cannot be read or written");
     if (offset > bytes_ || size > bytes_ - offset)
         throw DeviceError(
             fmt::format("bytes {} to {} are outside a buffer of {} bytes", offset, offset + size, bytes_));

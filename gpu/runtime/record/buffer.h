@@ -38,9 +38,15 @@ class Buffer {
         return buffer;
     }
 
-    /// A buffer of the caller's with `bytes` bytes. It needs VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, and as an input of
-    /// kernels also VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, for transfers their bits, and must outlive all work that
-    /// uses it. Memory barriers of streams cover it; the caller's own work must be ordered before and after theirs.
+    /// What every buffer may be used for.
+    static constexpr VkBufferUsageFlags k_usage =
+        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
+        VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+        VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    /// A buffer of the caller's with `bytes` bytes, a positive multiple of 16, as kernels may read four values at once;
+    /// throws DeviceError for another number. It needs those bits of k_usage that it is used for, and must outlive all
+    /// work that uses it. Memory barriers of streams cover it; the caller's own work must be ordered before and after
+    /// theirs.
     static Buffer borrow(Device& device, VkBuffer handle, std::size_t bytes);
 
     std::size_t bytes() const { return bytes_; }
@@ -65,29 +71,33 @@ class Buffer {
 
     /// The Vulkan objects behind a buffer.
     struct Resource {
-        Resource(Device& owner, std::size_t size);
-        Resource(Device& owner, VkBuffer borrowed, std::size_t size);
+        Resource(Device& owner, std::size_t capacity);
+        Resource(Device& owner, VkBuffer borrowed);
         Resource(const Resource&) = delete;
         Resource& operator=(const Resource&) = delete;
 
         Device& device;
-        const std::uint64_t id;      ///< of no other buffer, not even of one that takes the place of this one
-        const std::size_t capacity;  ///< bytes, from which a binding may extend beyond the buffer's own
-        MemoryPart memory;           // returned after the buffer in it
-        UniqueBuffer owned;          // none if the buffer is the caller's
+        const std::uint64_t id;  ///< of no other buffer, not even of one that takes the place of this one
+        MemoryPart memory;       // returned after the buffer in it
+        UniqueBuffer owned;      // none if the buffer is the caller's
         VkBuffer handle = VK_NULL_HANDLE;
         std::byte* mapped = nullptr;             ///< null if the host does not see the memory
         std::atomic<std::uint32_t> streams = 0;  ///< streams that have recorded a use and are not done
         std::atomic<Ticket> last_use = 0;        ///< the last submission that uses it
     };
     const std::shared_ptr<Resource>& resource() const { return resource_; }
+    /// Throws DeviceError if bytes [offset, offset + size) are not all in the buffer, or it has no memory.
+    void check_range(std::size_t offset, std::size_t size) const;
 
   private:
-    void check_range(std::size_t offset, std::size_t size) const;
     void poison(std::size_t capacity);
     std::shared_ptr<Resource> resource_;
     std::size_t bytes_ = 0;
 };
+
+/// Returns the bytes that a Vulkan buffer has for so many: a multiple of 16, as kernels may bind the tail of a vec4,
+/// and at least 16, as Vulkan has no empty buffers.
+std::size_t padded_buffer_bytes(std::size_t bytes);
 
 /// Replaces the buffer by a new one, of undefined contents, if it has fewer than `bytes` bytes.
 void reserve(Device& device, Buffer& buffer, std::size_t bytes);

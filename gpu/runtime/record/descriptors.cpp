@@ -51,12 +51,11 @@ void check_binding(const Program& program, const ReflectedBinding& binding, cons
 // Converts a range for Vulkan. Empty ranges still need an address. A range that ends its buffer is extended to a
 // multiple of 16 bytes, for kernels that read four values at once.
 VkDescriptorBufferInfo bound_range(const ReflectedBinding& binding, const BufferRange& range, const DeviceInfo& info) {
-    const std::uint64_t capacity = range.buffer->resource()->capacity;
-    if (range.bytes == 0) return {range.buffer->handle(), 0, std::min(k_min_bytes, capacity)};
+    if (range.bytes == 0) return {range.buffer->handle(), 0, k_min_bytes};
     const std::uint64_t end = range.offset + range.bytes;
     const bool last = end == range.buffer->bytes();
-    // The end is rounded, not the length: own buffers end at a multiple of 16 bytes, but ranges may begin at any.
-    const std::uint64_t padded = std::min((end + k_min_bytes - 1) / k_min_bytes * k_min_bytes, capacity) - range.offset;
+    // The end is rounded, not the length: buffers end at a multiple of 16 bytes, but ranges may begin at any.
+    const std::uint64_t padded = (end + k_min_bytes - 1) / k_min_bytes * k_min_bytes - range.offset;
     const std::uint64_t bytes = last ? std::min(padded, limits_of(binding, info).bytes) : range.bytes;
     const bool whole_texels = binding.type == BindingType::texels;
     return {range.buffer->handle(), range.offset, whole_texels ? bytes / binding.stride * binding.stride : bytes};

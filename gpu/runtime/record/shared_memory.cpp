@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/vulkan/errors.h"
 #include "gpu/runtime/vulkan/functions.h"
@@ -15,11 +13,6 @@ constexpr VkExternalMemoryHandleTypeFlagBits k_memory_descriptor = VK_EXTERNAL_M
 constexpr VkExternalSemaphoreHandleTypeFlagBits k_semaphore_descriptor =
     VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT;
 
-constexpr VkBufferUsageFlags k_shared_usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                              VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
-                                              VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
-                                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-
 void require_extension(const Device& device, const char* name, bool works) {
     if (!works || !device.enables_sharing() || !has_extension(device.physical(), name))
         throw DeviceError(
@@ -29,7 +22,7 @@ void require_extension(const Device& device, const char* name, bool works) {
 bool shares_memory(const Device& device) {
     auto info =
         empty_structure<VkPhysicalDeviceExternalBufferInfo>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_BUFFER_INFO);
-    info.usage = k_shared_usage;
+    info.usage = Buffer::k_usage;
     info.handleType = k_memory_descriptor;
     auto properties = empty_structure<VkExternalBufferProperties>(VK_STRUCTURE_TYPE_EXTERNAL_BUFFER_PROPERTIES);
     vkGetPhysicalDeviceExternalBufferProperties(device.physical(), &info, &properties);
@@ -74,10 +67,10 @@ void SharedBuffer::create(std::size_t bytes) {
         empty_structure<VkExternalMemoryBufferCreateInfo>(VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO);
     shared.handleTypes = k_memory_descriptor;
     auto info = empty_structure<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, &shared);
-    info.size = std::max<std::size_t>((bytes + 15) / 16 * 16, 16);
-    info.usage = k_shared_usage;
+    info.size = padded_buffer_bytes(bytes);
+    info.usage = Buffer::k_usage;
     check(vkCreateBuffer(device_.handle(), &info, nullptr, handle_.put()), "make a shared buffer");
-    buffer_ = Buffer::borrow(device_, handle_.get(), bytes);
+    buffer_ = Buffer::borrow(device_, handle_.get(), info.size);
 }
 
 void SharedBuffer::bind(std::size_t memory_bytes, const void* next) {

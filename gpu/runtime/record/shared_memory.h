@@ -22,6 +22,7 @@ class SharedBuffer {
     /// the driver afterwards. Throws as above; then the descriptor is still the caller's.
     SharedBuffer(Device& device, std::size_t bytes, std::size_t memory_bytes, int descriptor);
 
+    /// The buffer, of the wanted bytes rounded up to a multiple of 16.
     const Buffer& buffer() const { return buffer_; }
     /// Returns the size of the memory behind the buffer.
     std::size_t memory_bytes() const { return memory_bytes_; }

@@ -138,7 +138,6 @@ VkResult MemoryAllocator::allocate(const VkMemoryRequirements& needs, std::uint3
         if (result != VK_SUCCESS) return result;
         offset = in->take(needs.size, needs.alignment);
     }
-    part = {};
     part.allocator_ = this;
     part.memory_ = in->memory.get();
     part.offset_ = *offset;

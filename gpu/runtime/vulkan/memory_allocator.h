@@ -62,7 +62,8 @@ class MemoryAllocator {
     MemoryAllocator(const MemoryAllocator&) = delete;
     MemoryAllocator& operator=(const MemoryAllocator&) = delete;
 
-    /// Sets `part` to memory of the given type. Returns the error of vkAllocateMemory or vkMapMemory.
+    /// Sets `part`, which must be empty, to memory of the given type. Returns the error of vkAllocateMemory or
+    /// vkMapMemory.
     VkResult allocate(const VkMemoryRequirements& needs, std::uint32_t type, MemoryContent content, MemoryPart& part);
     /// Returns the number of allocations that the device holds now.
     std::size_t live_allocations() const;

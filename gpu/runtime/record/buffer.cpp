@@ -90,7 +90,6 @@ void Buffer::poison(std::size_t capacity) {
 }
 
 void Buffer::check_range(std::size_t offset, std::size_t size) const {
-    if (!resource_) throw DeviceError("a buffer without memory cannot be read or written");
     if (offset > bytes_ || size > bytes_ - offset)
         throw DeviceError(
             fmt::format("bytes {} to {} are outside a buffer of {} bytes", offset, offset + size, bytes_));

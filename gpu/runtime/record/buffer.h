@@ -86,7 +86,7 @@ class Buffer {
         std::atomic<Ticket> last_use = 0;        ///< the last submission that uses it
     };
     const std::shared_ptr<Resource>& resource() const { return resource_; }
-    /// Throws DeviceError if bytes [offset, offset + size) are not all in the buffer, or it has no memory.
+    /// Throws DeviceError if bytes [offset, offset + size) are not all in the buffer.
     void check_range(std::size_t offset, std::size_t size) const;
 
   private:

@@ -195,7 +195,7 @@ void Stream::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& argumen
                                      std::span<const BufferRange> ranges, std::span<const std::byte> push) {
     check_push(*kernel.program(), push);
     descriptors_.check_bindings(*kernel.program(), ranges);
-    arguments.check_range(offset, sizeof(VkDispatchIndirectCommand));
+    check_bytes(arguments, offset, sizeof(VkDispatchIndirectCommand));
     begin();
     use(arguments);
     prepare(kernel, ranges, push, {indirect_read(arguments)});
@@ -218,13 +218,13 @@ void Stream::render(const Pass& pass) {
         }
         programs_.insert(item.program);
         if (item.draw.indices) {
-            item.draw.indices->check_range(std::size_t{4} * item.draw.first_vertex,
-                                           std::size_t{4} * item.draw.vertices);
+            check_bytes(*item.draw.indices, std::size_t{4} * item.draw.first_vertex,
+                        std::size_t{4} * item.draw.vertices);
             accesses.push_back(index_read(*item.draw.indices));
             use(*item.draw.indices);
         }
         if (item.draw.indirect) {
-            item.draw.indirect->check_range(item.draw.indirect_offset, sizeof(VkDrawIndirectCommand));
+            check_bytes(*item.draw.indirect, item.draw.indirect_offset, sizeof(VkDrawIndirectCommand));
             accesses.push_back(indirect_read(*item.draw.indirect));
             use(*item.draw.indirect);
         }

@@ -183,6 +183,7 @@ class Stream {
     VkCommandBuffer commands() const { return external_ ? external_ : commands_.handle(); }
     void deliver();
     void release();
+    static void check_bytes(const Buffer& buffer, std::size_t offset, std::size_t bytes);
     void use(const Buffer& buffer);
     void prepare(const Kernel& kernel, std::span<const BufferRange> bindings, std::span<const std::byte> push,
                  std::vector<Access> accesses);

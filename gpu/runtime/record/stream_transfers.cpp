@@ -42,9 +42,14 @@ void copy_texels(VkCommandBuffer commands, VkImage image, VkImageAspectFlags asp
 
 }  // namespace
 
+void Stream::check_bytes(const Buffer& buffer, std::size_t offset, std::size_t bytes) {
+    if (!buffer) throw DeviceError("a copy needs a buffer that has memory");
+    buffer.check_range(offset, bytes);
+}
+
 void Stream::copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::size_t texel_bytes,
                         const Buffer& target) {
-    target.check_range(0, std::size_t{extent.width} * extent.height * texel_bytes);
+    check_bytes(target, 0, std::size_t{extent.width} * extent.height * texel_bytes);
     begin();
     use(target);
     order(std::array{copy_write(target)});
@@ -91,7 +96,7 @@ std::pair<StagingBlock*, std::size_t> Stream::stage(StagingBlocks& blocks, std::
 }
 
 Stream::UploadTarget Stream::begin_upload(const Buffer& target, std::size_t offset, std::size_t bytes) {
-    target.check_range(offset, bytes);
+    check_bytes(target, offset, bytes);
     if (bytes == 0) return {{}, nullptr, 0};
     device_.host_work().add(HostTask::byte_up, bytes);
     // No stream uses the target, so the host may write into it directly.
@@ -115,7 +120,7 @@ void Stream::upload_bytes(Buffer& target, std::span<const std::byte> data, std::
 }
 
 void Stream::download_bytes(const Buffer& source, std::span<std::byte> data, std::size_t offset) {
-    source.check_range(offset, data.size());
+    check_bytes(source, offset, data.size());
     if (data.empty()) return;
     device_.host_work().add(HostTask::byte_down, data.size());
     start();
@@ -127,8 +132,8 @@ void Stream::download_bytes(const Buffer& source, std::span<std::byte> data, std
 
 void Stream::copy(const Buffer& source, std::size_t source_offset, const Buffer& target, std::size_t target_offset,
                   std::size_t bytes) {
-    source.check_range(source_offset, bytes);
-    target.check_range(target_offset, bytes);
+    check_bytes(source, source_offset, bytes);
+    check_bytes(target, target_offset, bytes);
     if (bytes == 0) return;
     const bool apart = source_offset + bytes <= target_offset || target_offset + bytes <= source_offset;
     if (source.handle() == target.handle() && !apart)
@@ -177,7 +182,7 @@ void Stream::record_copies() {
 }
 
 void Stream::fill(const Buffer& target, std::uint32_t word) {
-    target.check_range(0, target.bytes());
+    check_bytes(target, 0, target.bytes());
     begin();
     use(target);
     order(std::array{copy_write(target)});

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -84,7 +85,7 @@ std::string view_file_text(const ViewFile& file) {
     json["fov"] = camera.field_of_view;
     json["shift"] = numbers_of(camera.shift);
     std::string size = camera.size;
-    size.replace(size.find('x'), 1, ",");
+    std::ranges::replace(size, 'x', ',');
     json["size"] = numbers_of(size);
     json["light"] = numbers_of(file.view.light);
     return ordered_json_text(json, -1, true);

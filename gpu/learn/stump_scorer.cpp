@@ -6,6 +6,7 @@
 #include <bit>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "embedded/learn_stumps_comp.h"
@@ -27,9 +28,11 @@ static_assert(sizeof(GroupedStump) == 16 && sizeof(StumpGroup) == 16);
 static_assert(shared::k_link_softmax == static_cast<std::uint32_t>(Link::softmax) &&
               shared::k_link_sigmoid == static_cast<std::uint32_t>(Link::sigmoid));
 
-constexpr std::uint32_t k_float_bits = 32;
+constexpr std::uint32_t k_float_bits = 32, k_rank_bits = 8;
+// Ranks have their highest bit turned over, so that they are in order as signed numbers, which devices compare faster.
+constexpr std::uint32_t k_sign_bit = 0x80000000;
 // Distances of columns on the device are multiples of the largest group of items that invocations read together.
-constexpr std::size_t k_stride_unit = std::size_t{4} * k_stump_quad_counts.back() * shared::k_stump_neighbors;
+static_assert(k_stump_stride == std::size_t{4} * k_stump_quad_counts.back() * shared::k_stump_neighbors);
 
 // Groups of stumps [first, end).
 struct GroupRange {
@@ -79,30 +82,29 @@ std::vector<GroupRange> parts_of(std::span<const StumpGroup> groups) {
     return parts;
 }
 
-// Returns the smallest number of bits, at least `bits`, that holds all ranks with the highest bit unused: devices
-// compare signed integers faster.
+// Returns the smallest number of bits, at least `bits`, that holds all ranks.
 std::uint32_t bits_for(std::span<const FeatureThresholds> columns, std::uint32_t bits) {
     std::size_t most = 0;
     for (const FeatureThresholds& column : columns) most = std::max(most, column.thresholds.size());
-    while (bits < k_float_bits && most >> (bits - 1) != 0) bits *= 2;
+    while (bits < k_float_bits && most >> bits != 0) bits *= 2;
     return bits;
 }
 
 // Returns a threshold in the kernel's form: see GroupedStump.
 std::uint32_t device_threshold(float threshold, const FeatureThresholds& column, std::uint32_t bits) {
     if (bits == k_float_bits) return std::bit_cast<std::uint32_t>(threshold);
-    return ((column.index_of(threshold) + 1) << (k_float_bits - bits)) - 1;
+    return (((column.index_of(threshold) + 1) << (k_float_bits - bits)) ^ k_sign_bit) - 1;
 }
 
-DeviceStumps group(const BoostedStumps& classifier, std::uint32_t bits) {
+// `columns` have the thresholds of all stumps, or more.
+DeviceStumps group(const BoostedStumps& classifier, std::vector<FeatureThresholds> columns, std::uint32_t bits) {
     const GroupedStumps grouped(classifier);
-    DeviceStumps result{.columns = thresholds_of(classifier.stumps),
-                        .bits = 0,
+    DeviceStumps result{.columns = std::move(columns),
+                        .bits = bits,
                         .stumps = {},
                         .groups = {},
                         .parts = {},
                         .constant = classifier.constant()};
-    result.bits = bits_for(result.columns, bits);
     for (const GroupedStumps::Group& group : grouped.groups)
         add_group({group.first, group.end, static_cast<std::uint32_t>(group.classes),
                    static_cast<std::uint32_t>(group.classes >> 32)},
@@ -131,9 +133,10 @@ void copy_finite(std::span<const float> values, std::span<std::byte> memory) {
 void write_features(std::span<const float> values, const FeatureThresholds& column, std::uint32_t bits,
                     std::span<std::byte> memory) {
     if (bits == 8)
-        rank(values, column.thresholds, std::span(reinterpret_cast<std::uint8_t*>(memory.data()), values.size()));
+        write_ranks(values, column, memory);
     else if (bits == 16)
-        rank(values, column.thresholds, std::span(reinterpret_cast<std::uint16_t*>(memory.data()), values.size()));
+        rank(values, column.thresholds, std::span(reinterpret_cast<std::uint16_t*>(memory.data()), values.size()),
+             static_cast<std::uint16_t>(k_sign_bit >> 16));
     else
         copy_finite(values, memory);
 }
@@ -195,6 +198,11 @@ void write_part(const std::vector<T>& values, InputLayout::Part part, std::span<
 }
 
 }  // namespace
+
+void write_ranks(std::span<const float> values, const FeatureThresholds& column, std::span<std::byte> memory) {
+    rank(values, column.thresholds, std::span(reinterpret_cast<std::uint8_t*>(memory.data()), values.size()),
+         static_cast<std::uint8_t>(k_sign_bit >> 24));
+}
 
 GpuStumpScorer::GpuStumpScorer(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
@@ -259,7 +267,9 @@ void GpuStumpScorer::probabilities_of_all(const BoostedStumps& classifier, Link 
         std::accumulate(matrices.begin(), matrices.end(), std::size_t{0},
                         [](std::size_t sum, const ScoredMatrix& matrix) { return sum + matrix.features->rows; });
     if (rows == 0) return;
-    const DeviceStumps grouped = group(classifier, bits_);
+    std::vector<FeatureThresholds> columns = thresholds_of(classifier.stumps);
+    const std::uint32_t bits = bits_for(columns, bits_);
+    const DeviceStumps grouped = group(classifier, std::move(columns), bits);
     const Classifier on_device{grouped, classifier.class_count, link, scale};
     const std::size_t tile_rows = rows_per_tile(on_device, rows);
     reserve(device_, probabilities_, tile_rows * classifier.class_count * sizeof(float));
@@ -322,23 +332,38 @@ void GpuStumpScorer::dispatch(Stream& stream, const Classifier& classifier, std:
 
 void GpuStumpScorer::record(Stream& stream, const BoostedStumps& classifier, Link link, float scale,
                             const Buffer& features, std::size_t rows, std::size_t stride, const Buffer& probabilities) {
-    DeviceStumps grouped = group(classifier, k_float_bits);
+    DeviceStumps grouped = group(classifier, thresholds_of(classifier.stumps), k_float_bits);
     const std::size_t columns = grouped.columns.empty() ? 0 : grouped.columns.back().feature + std::size_t{1};
     for (GroupedStump& stump : grouped.stumps) stump.column = grouped.columns[stump.column].feature;
-    const std::size_t feature_bytes = columns * stride * sizeof(float),
+    record_columns(stream, {grouped, classifier.class_count, link, scale}, columns, features, rows, stride,
+                   probabilities);
+}
+
+void GpuStumpScorer::record_ranks(Stream& stream, const BoostedStumps& classifier, Link link, float scale,
+                                  std::span<const FeatureThresholds> columns, const Buffer& ranks, std::size_t rows,
+                                  std::size_t stride, const Buffer& probabilities) {
+    const DeviceStumps grouped = group(classifier, {columns.begin(), columns.end()}, k_rank_bits);
+    record_columns(stream, {grouped, classifier.class_count, link, scale}, columns.size(), ranks, rows, stride,
+                   probabilities);
+}
+
+void GpuStumpScorer::record_columns(Stream& stream, const Classifier& classifier, std::size_t columns,
+                                    const Buffer& features, std::size_t rows, std::size_t stride,
+                                    const Buffer& probabilities) {
+    const DeviceStumps& grouped = classifier.grouped;
+    const std::size_t column_bytes = classifier.feature_bytes(stride), feature_bytes = columns * column_bytes,
                       probability_bytes = stride * classifier.class_count * sizeof(float);
-    if (stride % k_stride_unit != 0 || stride < rows || features.bytes() < feature_bytes ||
+    if (stride % k_stump_stride != 0 || stride < rows || features.bytes() < feature_bytes ||
         probabilities.bytes() < probability_bytes)
         throw UsageError(fmt::format(
-            "{} rows of {} columns, {} floats apart, and {} classes do not fit buffers of {} and {} bytes; the "
-            "distance "
+            "{} rows of {} columns, {} rows apart, and {} classes do not fit buffers of {} and {} bytes; the distance "
             "must be a multiple of {}",
-            rows, columns, stride, classifier.class_count, features.bytes(), probabilities.bytes(), k_stride_unit));
+            rows, columns, stride, classifier.class_count, features.bytes(), probabilities.bytes(), k_stump_stride));
     if (rows == 0) return;
     const Buffer stumps = uploaded<GroupedStump>(device_, stream, grouped.stumps),
                  groups = uploaded<StumpGroup>(device_, stream, grouped.groups),
                  constant = uploaded<float>(device_, stream, grouped.constant);
-    dispatch(stream, {grouped, classifier.class_count, link, scale}, rows, stride * sizeof(float),
+    dispatch(stream, classifier, rows, column_bytes,
              {BufferRange(features, 0, feature_bytes), stumps, groups, constant,
               BufferRange(probabilities, 0, probability_bytes)});
 }

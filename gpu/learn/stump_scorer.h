@@ -15,6 +15,7 @@
 #include "gpu/runtime/record/profiler.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/learn/boosting/boosted_stumps.h"
+#include "host/learn/boosting/threshold_ranks.h"
 
 namespace exemplar {
 
@@ -31,6 +32,14 @@ inline constexpr std::array<std::uint32_t, 3> k_stump_feature_bits{8, 16, 32};
 inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp",     "bits", k_stump_feature_bits, 8, 8,
                                                TuningMetric::end_to_end};
 
+/// Distances between columns of features on the device are multiples of this, in rows.
+constexpr std::size_t k_stump_stride = 256;
+/// Most thresholds of a column whose ranks are one byte each.
+constexpr std::size_t k_max_ranked_thresholds = 255;
+/// Writes the ranks of values among the thresholds of their column as GpuStumpScorer::record_ranks reads them: one byte
+/// each, 128 + rank, modulo 256.
+void write_ranks(std::span<const float> values, const FeatureThresholds& column, std::span<std::byte> memory);
+
 /// Boosted stumps on the device. Only the features that stumps use are uploaded, as floats or as ranks
 /// (k_stump_bits). The rows of all matrices that are scored together are concatenated and cut into tiles that fit
 /// the device's limits, one submission and two copies each. Long classifiers take several dispatches
@@ -45,11 +54,17 @@ class GpuStumpScorer final : public StumpScorer {
                               std::span<const ScoredMatrix> matrices) override;
 
     /// Records the scoring of features that are in a buffer already: columns by the numbers that the classifier's
-    /// stumps have, `stride` floats each, a multiple of 256 (at least `rows`), all finite in the first `rows` of a
-    /// column. Writes a probability per class and row, item-major, to `probabilities`, for `stride` rows. Probabilities
-    /// are those of probabilities_of_all. Throws UsageError if a buffer is too small, and as Stream::dispatch.
+    /// stumps have, `stride` floats each, a multiple of k_stump_stride (at least `rows`), all finite in the first
+    /// `rows` of a column. Writes a probability per class and row, item-major, to `probabilities`, for `stride` rows.
+    /// Probabilities are those of probabilities_of_all. Throws UsageError if a buffer is too small, and as
+    /// Stream::dispatch.
     void record(Stream& stream, const BoostedStumps& classifier, Link link, float scale, const Buffer& features,
                 std::size_t rows, std::size_t stride, const Buffer& probabilities);
+    /// The same for ranks, of one byte each, as write_ranks writes them. Column i has the feature columns[i].feature
+    /// and its ranks among columns[i].thresholds, which include those of all stumps of this feature.
+    void record_ranks(Stream& stream, const BoostedStumps& classifier, Link link, float scale,
+                      std::span<const FeatureThresholds> columns, const Buffer& ranks, std::size_t rows,
+                      std::size_t stride, const Buffer& probabilities);
 
   private:
     // A classifier on the device.
@@ -60,6 +75,8 @@ class GpuStumpScorer final : public StumpScorer {
     struct Bindings {
         BufferRange features, stumps, groups, constant, probabilities;
     };
+    void record_columns(Stream& stream, const Classifier& classifier, std::size_t columns, const Buffer& features,
+                        std::size_t rows, std::size_t stride, const Buffer& probabilities);
     void dispatch(Stream& stream, const Classifier& classifier, std::size_t rows, std::size_t column_bytes,
                   const Bindings& bindings);
     const Kernel& kernel(std::uint32_t classes, std::uint32_t bits, bool in_parts);

@@ -6,29 +6,77 @@ SHARED_BEGIN
 
 const uint k_context_bins = 5;  // distance ranges
 const uint k_context_axes = 6;
-// Samples per texel of ranges, one byte each.
-const uint k_context_sample_block = 16;
+// Samples per texel of ranges, four bits each.
+const uint k_context_sample_block = 32;
 // Classes per texel of masses.
 const uint k_context_class_block = 4;
 
-struct GeodesicContextParameters {
-    uint faces;          // of the tile; also the stride between output columns
-    uint sample_blocks;  // of k_context_sample_block samples
-    uint classes;
-    uint threads;  // invocations along x that have work
-};
-
-struct AxisContextParameters {
+// A mesh, or a part of one: some of its samples, faces and classes; and where its own begin in buffers that hold
+// several parts, in elements of these.
+struct ContextPart {
     vec4 edges[k_context_axes];  // inner bin edges of each axis, rising
     uint faces;
     uint samples;
     uint classes;
-    uint padding;
+    uint first_class;     // of the probabilities
+    uint first_face;      // the positions, axes x faces, begin at axes x first_face
+    uint first_sample;    // of the samples; the tables by axis, axes x samples, begin at axes x first_sample
+    uint ranges;          // sample blocks x faces
+    uint masses;          // class blocks x samples, padded to whole sample blocks
+    uint prefixes;        // axes x class blocks x (samples + 1)
+    uint first_geodesic;  // column 0 of the histograms over geodesic distance, of the first face
+    uint first_axes;      // the same along axes
+    uint stride;          // between columns of histograms
+};
+
+// A face that represents the surface.
+struct ContextSample {
+    uint row;  // of the probabilities
+    float area;
+};
+
+// A contextual column that a classifier compares with thresholds.
+struct RankedColumn {
+    uint source;  // column of the histograms
+    uint target;  // column of the ranks
+    uint first;   // of the thresholds, in groups of four
+    uint groups;
+};
+
+struct MassParameters {
+    uint classes;  // of a row of probabilities
+};
+
+struct RankParameters {
+    uint rows;            // a multiple of four; also the stride between columns
+    uint geodesic_count;  // columns of the histograms over geodesic distance; those along axes follow
+};
+
+struct LinearParameters {
+    uint rows;  // also the stride between columns
+    uint classes;
+    uint threads;  // invocations along x that have work
+};
+
+struct PoolParameters {
+    uint rows;
+    uint pools;  // 1: combines the stumps with a linear classifier
+    float ratio;
+    float scale;
+    float stages;        // of the cascade so far, with this one
+    uint averaged_low;   // bit c: class c is averaged over the stages
+    uint averaged_high;  // bit c - 32
 };
 
 #ifdef __cplusplus
-EXEMPLAR_LAYOUT(GeodesicContextParameters, faces, sample_blocks, classes, threads)
-EXEMPLAR_LAYOUT(AxisContextParameters, edges, faces, samples, classes, padding)
+EXEMPLAR_LAYOUT(ContextPart, edges, faces, samples, classes, first_class, first_face, first_sample, ranges, masses,
+                prefixes, first_geodesic, first_axes, stride)
+EXEMPLAR_LAYOUT(ContextSample, row, area)
+EXEMPLAR_LAYOUT(RankedColumn, source, target, first, groups)
+EXEMPLAR_LAYOUT(MassParameters, classes)
+EXEMPLAR_LAYOUT(RankParameters, rows, geodesic_count)
+EXEMPLAR_LAYOUT(LinearParameters, rows, classes, threads)
+EXEMPLAR_LAYOUT(PoolParameters, rows, pools, ratio, scale, stages, averaged_low, averaged_high)
 #endif
 
 SHARED_END

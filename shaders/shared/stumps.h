@@ -7,7 +7,7 @@ SHARED_BEGIN
 // One decision stump, without its classes.
 struct GroupedStump {
     uint column;     // of the uploaded features
-    uint threshold;  // bits of a float; or its index among the column's thresholds in the highest bits, all others set
+    uint threshold;  // bits of a float; or a rank: the largest word, as a signed number, of a feature that is not above it
     float above;
     float below;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "host/core/errors.h"
@@ -52,7 +53,6 @@ Scores score_unary_stage(const LabelingModel& model, std::size_t stage, Meshes m
 
 /// Runs the unary cascade, stage by stage.
 Scores score_unary(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
-    for (const MeshFeatures* mesh : meshes) require_features(mesh->unary, model.unary_names, "face");
     Scores scores = score_unary_stage(model, 0, meshes, backend.scorer);
     std::vector<CascadePrediction> predictions(meshes.size(), {model.averaged_labels, model.class_count()});
     for (std::size_t m = 0; m < meshes.size(); ++m) predictions[m].add_stage(scores[m]);
@@ -78,7 +78,6 @@ Scores score_boundary(const LabelingModel& model, Meshes meshes, const LabelingB
             boundaries.emplace_back(mesh->edges.size(), k_unknown_boundary_probability);
         return boundaries;
     }
-    for (const MeshFeatures* mesh : meshes) require_features(mesh->pairwise, model.pairwise_names, "edge");
     const std::vector<std::string> names = edge_context_names();
     for (std::size_t stage = 0; stage < model.pairwise.size(); ++stage) {
         for (std::size_t m = 0; m < boundaries.size(); ++m)  // none before the first stage
@@ -90,15 +89,18 @@ Scores score_boundary(const LabelingModel& model, Meshes meshes, const LabelingB
     return boundaries;
 }
 
-/// Adds to each mesh its share of the seconds that all took together, by number of faces.
-void add_seconds(const char* stage, double seconds, std::span<FaceScores> scores) {
-    std::size_t all = 0;
-    for (const FaceScores& mesh : scores) all += mesh.probabilities.size();
-    for (FaceScores& mesh : scores) {
-        const double share =
-            static_cast<double>(mesh.probabilities.size()) / static_cast<double>(std::max<std::size_t>(all, 1));
-        mesh.seconds.emplace_back(stage, seconds * share);
-    }
+/// Runs all classifiers, one after the other.
+std::vector<FaceScores> score_in_stages(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
+    std::vector<FaceScores> scores(meshes.size());
+    const Stopwatch watch;
+    Scores unary = score_unary(model, meshes, backend);
+    for (std::size_t m = 0; m < meshes.size(); ++m) scores[m].probabilities = std::move(unary[m]);
+    const double unary_seconds = watch.wall();
+    add_seconds("unary", unary_seconds, scores);
+    Scores boundary = score_boundary(model, meshes, backend);
+    for (std::size_t m = 0; m < meshes.size(); ++m) scores[m].boundary = std::move(boundary[m]);
+    add_seconds("pairwise", watch.wall() - unary_seconds, scores);
+    return scores;
 }
 
 }  // namespace
@@ -142,17 +144,34 @@ void drop_context_columns(MeshFeatures& features) {
     }
 }
 
+void check_features(const LabelingModel& model, const MeshFeatures& features) {
+    require_features(features.unary, model.unary_names, "face");
+    if (!model.pairwise.empty()) require_features(features.pairwise, model.pairwise_names, "edge");
+}
+
+void add_seconds(const char* stage, double seconds, std::span<FaceScores> scores) {
+    std::size_t all = 0;
+    for (const FaceScores& mesh : scores) all += mesh.probabilities.size();
+    for (FaceScores& mesh : scores) {
+        const double share =
+            static_cast<double>(mesh.probabilities.size()) / static_cast<double>(std::max<std::size_t>(all, 1));
+        mesh.seconds.emplace_back(stage, seconds * share);
+    }
+}
+
 std::vector<FaceScores> score_faces(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
                                     const LabelingBackend& backend) {
-    std::vector<FaceScores> scores(meshes.size());
-    const Stopwatch watch;
-    Scores unary = score_unary(model, meshes, backend);
-    for (std::size_t m = 0; m < meshes.size(); ++m) scores[m].probabilities = std::move(unary[m]);
-    const double unary_seconds = watch.wall();
-    add_seconds("unary", unary_seconds, scores);
-    Scores boundary = score_boundary(model, meshes, backend);
-    for (std::size_t m = 0; m < meshes.size(); ++m) scores[m].boundary = std::move(boundary[m]);
-    add_seconds("pairwise", watch.wall() - unary_seconds, scores);
+    for (const MeshFeatures* mesh : meshes) check_features(model, *mesh);
+    if (!backend.cascade) return score_in_stages(model, meshes, backend);
+    std::vector<FaceScores> scores;
+    while (!meshes.empty()) {
+        check_interrupt();
+        const std::size_t count = backend.cascade->fitting(model, meshes);
+        std::vector<FaceScores> some = count > 0 ? backend.cascade->score(model, meshes.first(count))
+                                                 : score_in_stages(model, meshes.first(1), backend);
+        meshes = meshes.subspan(some.size());
+        std::ranges::move(some, std::back_inserter(scores));
+    }
     return scores;
 }
 

@@ -12,17 +12,28 @@
 
 namespace exemplar {
 
-/// Implementations of the heavy per-face work: on the CPU (the references) or by compute shaders.
-struct LabelingBackend {
-    StumpScorer& scorer;
-    ContextHistograms& context;
-};
-
 /// Output of the classifiers for one mesh, before the graph cut.
 struct FaceScores {
     std::vector<float> probabilities;                     ///< faces x classes, from the unary cascade
     std::vector<float> boundary;                          ///< P(boundary) per interior edge
     std::vector<std::pair<std::string, double>> seconds;  ///< its share of the wall time: unary, pairwise
+};
+
+/// Runs all classifiers of a model at once, where a device can keep what lies between them.
+class CascadeScorer {
+  public:
+    virtual ~CascadeScorer() = default;
+    /// Returns how many of the meshes, from the first on, can be scored together; 0 if the first cannot be scored here.
+    virtual std::size_t fitting(const LabelingModel& model, std::span<MeshFeatures* const> meshes) const = 0;
+    /// Scores meshes that fit. Each mesh gets the result that it would get alone, bit for bit on one device.
+    virtual std::vector<FaceScores> score(const LabelingModel& model, std::span<MeshFeatures* const> meshes) = 0;
+};
+
+/// Implementations of the heavy per-face work: on the CPU (the references) or by compute shaders.
+struct LabelingBackend {
+    StumpScorer& scorer;
+    ContextHistograms& context;
+    CascadeScorer* cascade = nullptr;  ///< null: scorer and context in turns
 };
 
 /// Result of inference for one mesh, per triangle.
@@ -49,13 +60,17 @@ std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const 
 /// Removes the contextual columns of both matrices.
 void drop_context_columns(MeshFeatures& features);
 
+/// Throws ModelError if the features of a mesh are not those that the model was trained on.
+void check_features(const LabelingModel& model, const MeshFeatures& features);
+/// Adds to each mesh its share of the seconds that all took together, by number of faces.
+void add_seconds(const char* stage, double seconds, std::span<FaceScores> scores);
+
 // Labeling has two steps, so that many meshes can keep a device and the cores busy: the classifiers for several meshes
 // together, then the graph cut of each mesh.
 
-/// Runs all classifiers for several different meshes, with one submission to the device per classifier and histogram
-/// if memory suffices. Each mesh gets the result that it would get alone, bit for bit on one device. Adds the
-/// contextual columns to the features, or reuses them. Throws ModelError if the features of a mesh are not those that
-/// the model was trained on.
+/// Runs all classifiers for several different meshes together, if memory suffices. Each mesh gets the result that it
+/// would get alone, bit for bit on one device. May add the contextual columns to the features, or reuses them. Throws
+/// ModelError if the features of a mesh are not those that the model was trained on.
 std::vector<FaceScores> score_faces(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
                                     const LabelingBackend& backend);
 /// Cuts a mesh into parts: the CRF on the result of score_faces, then the merging of small pieces. Runs on the host

@@ -22,8 +22,14 @@ std::vector<FeatureThresholds> thresholds_of(std::span<const Stump> stumps);
 
 /// Computes the ranks of values: the number of `thresholds` (distinct, rising) below each. A rank answers every
 /// stump: value > thresholds[i] holds exactly where rank > i, and NaN has rank 0. `ranks` has one entry per value;
-/// thresholds.size() must fit its type.
-void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks);
-void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint16_t> ranks);
+/// thresholds.size() must fit its type. Ranks count from `lowest` and wrap around: with half of the type's range, they
+/// are in order as signed numbers.
+void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks,
+          std::uint8_t lowest = 0);
+void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint16_t> ranks,
+          std::uint16_t lowest = 0);
+
+/// Returns, for each feature that one of several such lists has, the thresholds of all of them.
+std::vector<FeatureThresholds> merged(std::span<const std::vector<FeatureThresholds>> lists);
 
 }  // namespace exemplar

@@ -183,20 +183,22 @@ struct Cascade {
 }  // namespace
 
 std::vector<OperationKind> labeling_operations() {
-    return {
-        {"contextual histograms",
-         "faces",
-         {5'000, 20'000, 100'000},
-         {&shaders::labeling_context_masses_comp, &shaders::labeling_context_prefixes_comp,
-          &shaders::labeling_context_geodesic_comp, &shaders::labeling_context_axes_comp},
-         {k_context_faces},
-         prepare_as<Histograms>},
-        {"cascade of labels",
-         "faces",
-         {5'000, 20'000},
-         {&shaders::labeling_context_ranks_comp, &shaders::labeling_context_linear_comp, &shaders::labeling_pool_comp},
-         {k_linear_rows},
-         prepare_as<Cascade>}};
+    return {{"contextual histograms",
+             "faces",
+             {5'000, 20'000, 100'000},
+             {&shaders::labeling_context_masses_comp, &shaders::labeling_context_prefixes_comp,
+              &shaders::labeling_context_geodesic_comp, &shaders::labeling_context_axes_comp},
+             {k_context_faces},
+             prepare_as<Histograms>},
+            {"cascade of labels",
+             "faces",
+             {5'000, 20'000},
+             {&shaders::labeling_context_masses_comp, &shaders::labeling_context_prefixes_comp,
+              &shaders::labeling_context_geodesic_comp, &shaders::labeling_context_axes_comp,
+              &shaders::labeling_context_ranks_comp, &shaders::labeling_context_linear_comp,
+              &shaders::labeling_pool_comp, &shaders::learn_stumps_comp},
+             {k_linear_rows},
+             prepare_as<Cascade>}};
 }
 
 }  // namespace exemplar

@@ -1,10 +1,13 @@
 #include "gpu/hatching/hatching_evaluator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "embedded/hatching_orientations_comp.h"
 #include "embedded/hatching_property_comp.h"
+#include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/hatching/features/powers.h"
 #include "shaders/shared/hatching_features.h"
@@ -59,6 +62,14 @@ Rules rules_of(std::span<const OrientationFunction> functions) {
     return rules;
 }
 
+Used used_features(const PropertyModel& model) {
+    Used used;
+    for (const PropertyModel::Term& term : model.terms)
+        used.numbers.push_back(static_cast<Word>(term.feature / k_powers));
+    used.sort();
+    return used;
+}
+
 std::vector<PropertyTerm> terms_of(const PropertyModel& model, const Used& used) {
     std::vector<PropertyTerm> terms;
     for (const PropertyModel::Term& term : model.terms) {
@@ -106,31 +117,76 @@ std::size_t GpuHatchingEvaluator::tile_rows(std::size_t rows, std::size_t row_by
     return std::max<std::size_t>(std::min(most, rows + 3) / 4 * 4, 4);
 }
 
+std::vector<std::uint32_t> GpuHatchingEvaluator::fields_of(std::span<const OrientationFunction> functions) {
+    return rules_of(functions).fields.numbers;
+}
+
+std::vector<std::uint32_t> GpuHatchingEvaluator::features_of(const PropertyModel& model) {
+    return used_features(model).numbers;
+}
+
+void GpuHatchingEvaluator::record_orientations(Stream& stream, std::span<const OrientationFunction> functions,
+                                               const Buffer& segments, const Buffer& fields, std::size_t rows,
+                                               std::size_t stride, const Buffer& directions) {
+    const Rules rules = rules_of(functions);
+    const std::size_t field_bytes =
+        std::max<std::size_t>(rules.fields.numbers.size(), 1) * stride * sizeof(DoubledAngle);
+    if (stride < rows || segments.bytes() < rows * sizeof(Word) || fields.bytes() < field_bytes ||
+        directions.bytes() < rows * sizeof(DoubledAngle))
+        throw UsageError(fmt::format("{} rows of {} fields, {} rows apart, do not fit buffers of {}, {} and {} bytes",
+                                     rows, rules.fields.numbers.size(), stride, segments.bytes(), fields.bytes(),
+                                     directions.bytes()));
+    if (rows == 0) return;
+    std::vector<RuleTerm> terms = rules.terms;
+    if (terms.empty()) terms.push_back({});  // a buffer cannot be empty; no rule refers to it
+    const Buffer begins = uploaded<Word>(device_, stream, rules.begin),
+                 term_buffer = uploaded<RuleTerm>(device_, stream, terms);
+    stream.dispatch(orientations_, rows,
+                    {BufferRange(segments, 0, rows * sizeof(Word)), begins, term_buffer,
+                     BufferRange(fields, 0, field_bytes), BufferRange(directions, 0, rows * sizeof(DoubledAngle))},
+                    RuleParameters{static_cast<Word>(rows), static_cast<Word>(stride)});
+}
+
+void GpuHatchingEvaluator::record_property(Stream& stream, const PropertyModel& model, const Buffer& columns,
+                                           std::size_t rows, std::size_t stride, const Buffer& values) {
+    const Used used = used_features(model);
+    const std::size_t column_bytes = std::max<std::size_t>(used.numbers.size(), 1) * stride * sizeof(float);
+    if (stride % 4 != 0 || stride < rows || columns.bytes() < column_bytes || values.bytes() < stride * sizeof(float))
+        throw UsageError(fmt::format(
+            "{} rows of {} columns, {} rows apart, do not fit buffers of {} and {} bytes; the distance must "
+            "be a multiple of 4",
+            rows, used.numbers.size(), stride, columns.bytes(), values.bytes()));
+    if (rows == 0) return;
+    std::vector<PropertyTerm> terms = terms_of(model, used);
+    const PropertyParameters parameters{.quads = static_cast<Word>((rows + 3) / 4),
+                                        .stride = static_cast<Word>(stride / 4),
+                                        .terms = static_cast<Word>(terms.size()),
+                                        .log_factor = std::log(model.factor)};
+    if (terms.empty()) terms.push_back({});
+    const Buffer term_buffer = uploaded<PropertyTerm>(device_, stream, terms);
+    stream.dispatch(
+        property_, parameters.quads,
+        {term_buffer, BufferRange(columns, 0, column_bytes), BufferRange(values, 0, stride * sizeof(float))},
+        parameters);
+}
+
 std::vector<DoubledAngle> GpuHatchingEvaluator::orientations(std::span<const OrientationFunction> functions,
                                                              std::span<const std::int32_t> segment,
                                                              const OrientationFields& fields) {
     check_orientations(functions, segment, fields);
     std::vector<DoubledAngle> directions(fields.rows);
-    const Rules rules = rules_of(functions);
-    if (rules.terms.empty() || fields.rows == 0) return directions;
-    const Buffer begins = uploaded<Word>(device_, stream_, rules.begin),
-                 terms = uploaded<RuleTerm>(device_, stream_, rules.terms);
-    const std::size_t used = rules.fields.numbers.size(), tile = tile_rows(fields.rows, used * sizeof(DoubledAngle));
+    const std::vector<std::uint32_t> used = fields_of(functions);
+    if (used.empty() || fields.rows == 0) return directions;
+    const std::size_t tile = tile_rows(fields.rows, used.size() * sizeof(DoubledAngle));
     reserve(device_, segments_, tile * sizeof(Word));
-    reserve(device_, columns_, used * tile * sizeof(DoubledAngle));
+    reserve(device_, columns_, used.size() * tile * sizeof(DoubledAngle));
     reserve(device_, values_, tile * sizeof(DoubledAngle));
     for (std::size_t first = 0; first < fields.rows; first += tile) {
         const std::size_t rows = std::min(tile, fields.rows - first);
         stream_.upload(segments_, segment.subspan(first, rows));
-        for (std::size_t k = 0; k < used; ++k)
-            stream_.upload(columns_, fields.field(rules.fields.numbers[k]).subspan(first, rows),
-                           k * tile * sizeof(DoubledAngle));
-        const RuleParameters parameters{static_cast<Word>(rows), static_cast<Word>(tile)};
-        stream_.dispatch(orientations_, rows,
-                         {BufferRange(segments_, 0, tile * sizeof(Word)), begins, terms,
-                          BufferRange(columns_, 0, used * tile * sizeof(DoubledAngle)),
-                          BufferRange(values_, 0, tile * sizeof(DoubledAngle))},
-                         parameters);
+        for (std::size_t k = 0; k < used.size(); ++k)
+            stream_.upload(columns_, fields.field(used[k]).subspan(first, rows), k * tile * sizeof(DoubledAngle));
+        record_orientations(stream_, functions, segments_, columns_, rows, tile, values_);
         stream_.fetch(values_, std::span(directions).subspan(first, rows));
     }
     return directions;
@@ -141,30 +197,21 @@ std::vector<float> GpuHatchingEvaluator::property(const PropertyModel& model, st
     const std::vector<std::span<const float>> columns = property_columns(model, which, base);
     std::vector<float> values(base.rows);
     if (base.rows == 0) return values;
-    Used used;
-    for (const auto& term : model.terms) used.numbers.push_back(static_cast<Word>(term.feature / k_powers));
-    used.sort();
-    std::vector<PropertyTerm> terms = terms_of(model, used);
-    std::vector<std::span<const float>> of_place(std::max<std::size_t>(used.numbers.size(), 1));
-    for (std::size_t k = 0; k < terms.size(); ++k) of_place[terms[k].column] = columns[k];
-    const Buffer term_buffer = uploaded<PropertyTerm>(device_, stream_, terms);
-    const std::size_t tile = tile_rows(base.rows, of_place.size() * sizeof(float)), column_bytes = tile * sizeof(float);
-    reserve(device_, columns_, of_place.size() * column_bytes);
-    reserve(device_, values_, column_bytes);
+    const Used used = used_features(model);
+    std::vector<std::span<const float>> of_place(used.numbers.size());
+    for (std::size_t k = 0; k < columns.size(); ++k)
+        of_place[used.place(static_cast<Word>(model.terms[k].feature / k_powers))] = columns[k];
+    const std::size_t count = std::max<std::size_t>(of_place.size(), 1),
+                      tile = tile_rows(base.rows, count * sizeof(float));
+    reserve(device_, columns_, count * tile * sizeof(float));
+    reserve(device_, values_, tile * sizeof(float));
     for (std::size_t first = 0; first < base.rows; first += tile) {
         const std::size_t rows = std::min(tile, base.rows - first);
-        for (std::size_t k = 0; k < used.numbers.size(); ++k)
-            stream_.upload_with(columns_, rows * sizeof(float), k * column_bytes, [&](std::span<std::byte> memory) {
-                copy_bounded(of_place[k].subspan(first, rows), memory);
-            });
-        const PropertyParameters parameters{.quads = static_cast<Word>((rows + 3) / 4),
-                                            .stride = static_cast<Word>(tile / 4),
-                                            .terms = static_cast<Word>(terms.size()),
-                                            .log_factor = std::log(model.factor)};
-        stream_.dispatch(property_, parameters.quads,
-                         {term_buffer, BufferRange(columns_, 0, of_place.size() * column_bytes),
-                          BufferRange(values_, 0, column_bytes)},
-                         parameters);
+        for (std::size_t k = 0; k < of_place.size(); ++k)
+            stream_.upload_with(
+                columns_, rows * sizeof(float), k * tile * sizeof(float),
+                [&](std::span<std::byte> memory) { copy_bounded(of_place[k].subspan(first, rows), memory); });
+        record_property(stream_, model, columns_, rows, tile, values_);
         stream_.fetch(values_, std::span(values).subspan(first, rows));
     }
     return values;

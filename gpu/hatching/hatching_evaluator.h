@@ -29,6 +29,23 @@ class GpuHatchingEvaluator final : public HatchingEvaluator {
     std::vector<float> property(const PropertyModel& model, std::span<const std::uint32_t> which,
                                 const FeatureMatrix& base) override;
 
+    // The same with inputs and results in buffers, recorded into a stream, for example of another program's commands.
+    // They throw UsageError if a buffer is too small, and as Stream::dispatch.
+
+    /// Returns the numbers of the fields that rules use, rising (OrientationFields::field).
+    static std::vector<std::uint32_t> fields_of(std::span<const OrientationFunction> functions);
+    /// Records the directions (doubled angles) of rows. `segments` has the number of a function for each row, `fields`
+    /// the fields of fields_of, `stride` doubled angles each (at least `rows`). A row without direction gets (0, 0).
+    void record_orientations(Stream& stream, std::span<const OrientationFunction> functions, const Buffer& segments,
+                             const Buffer& fields, std::size_t rows, std::size_t stride, const Buffer& directions);
+    /// Returns the numbers of the base features that a property uses, rising.
+    static std::vector<std::uint32_t> features_of(const PropertyModel& model);
+    /// Records a property of rows. `columns` has the features of features_of, `stride` floats each: a multiple of 4, at
+    /// least `rows`. Values must be finite, of magnitude 1e19 at most; -2e30 stands for no value. Writes a float for
+    /// each row, up to a multiple of 4.
+    void record_property(Stream& stream, const PropertyModel& model, const Buffer& columns, std::size_t rows,
+                         std::size_t stride, const Buffer& values);
+
   private:
     std::size_t tile_rows(std::size_t rows, std::size_t row_bytes) const;
 

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -203,6 +205,49 @@ TEST(HatchingEvaluatorParity, PropertiesOfAnyNumberOfTerms) {
             expect_property_parity(evaluator, 517, terms, random);
         }
     }
+}
+
+TEST(HatchingEvaluatorParity, InputsOnTheDevice) {
+    Device& device = shared_device();
+    GpuHatchingEvaluator evaluator(device);
+    Random random(31);
+    constexpr std::size_t k_rows = 301, k_stride = 320;
+    const OrientationFields fields = random_fields(k_rows, random);
+    const std::vector<OrientationFunction> functions = random_functions(4, random);
+    const std::vector<std::int32_t> segment = random_segments(k_rows, 4, random);
+    const std::vector<std::uint32_t> used = GpuHatchingEvaluator::fields_of(functions);
+    Buffer inputs(device, used.size() * k_stride * sizeof(DoubledAngle)), out(device, k_rows * sizeof(DoubledAngle));
+    for (std::size_t k = 0; k < used.size(); ++k)
+        inputs.upload(fields.field(used[k]), k * k_stride * sizeof(DoubledAngle));
+    const Buffer segments = Buffer::of<std::int32_t>(device, segment);
+    std::vector<DoubledAngle> directions(k_rows);
+    Stream stream(device);
+    evaluator.record_orientations(stream, functions, segments, inputs, k_rows, k_stride, out);
+    stream.fetch<DoubledAngle>(out, directions);
+    EXPECT_EQ(directions, evaluator.orientations(functions, segment, fields));
+    EXPECT_THROW(evaluator.record_orientations(stream, functions, segments, inputs, k_rows, k_rows - 1, out),
+                 UsageError);
+    EXPECT_THROW(evaluator.record_orientations(stream, functions, segments, inputs, k_rows, 2 * k_stride, out),
+                 UsageError);
+
+    const std::vector<std::uint32_t> which{4, 8, 300, 1, 77, 12, 13};
+    const FeatureMatrix base = random_features(k_rows, which.size(), random);
+    const PropertyModel model = random_model(12, which, base, random);
+    const std::vector<std::uint32_t> features = GpuHatchingEvaluator::features_of(model);
+    Buffer columns(device, features.size() * k_stride * sizeof(float)), result(device, k_stride * sizeof(float));
+    for (std::size_t k = 0; k < features.size(); ++k) {
+        const auto place = static_cast<std::size_t>(std::ranges::find(which, features[k]) - which.begin());
+        std::vector<float> values(base.column(place).begin(), base.column(place).end());
+        for (float& value : values) value = std::isnan(value) ? -2e30F : std::clamp(value, -1e19F, 1e19F);
+        columns.upload<float>(values, k * k_stride * sizeof(float));
+    }
+    std::vector<float> values(k_rows);
+    evaluator.record_property(stream, model, columns, k_rows, k_stride, result);
+    const HostReadback part{0, std::as_writable_bytes(std::span(values))};
+    stream.fetch(result, std::span(&part, 1));
+    EXPECT_EQ(values, evaluator.property(model, which, base));
+    EXPECT_THROW(evaluator.record_property(stream, model, columns, k_rows, 302, result), UsageError);
+    EXPECT_THROW(evaluator.record_property(stream, model, columns, k_rows, 324, result), UsageError);
 }
 
 TEST(HatchingEvaluatorParity, IsDeterministic) {

@@ -151,6 +151,14 @@ class SpirvBench(ProgramTest):
         message = self.wrong("broken.comp", *SIZE, code=1, says=["broken.comp", "'nothing'", "glslangValidator"])
         self.assertIn("broken.comp:11", message)
 
+    def test_accesses_out_of_bounds_are_found_with_their_line(self):
+        self.write("beyond.comp", SAXPY.replace("x[i] +", "x[i + 100000] +"))
+        self.bench("beyond.comp", *SIZE)
+        self.addCleanup(self.environment.update, EXEMPLAR_VALIDATION=self.environment.get("EXEMPLAR_VALIDATION", "0"))
+        self.environment["EXEMPLAR_VALIDATION"] = "gpu"
+        self.bench("saxpy.comp", *SIZE)
+        self.wrong("beyond.comp", *SIZE, code=1, says=["beyond.comp", "access out of bounds", "at line 11"])
+
     def test_tools_that_are_not_installed(self):
         self.addCleanup(self.environment.update, PATH=self.environment["PATH"])
         self.environment["PATH"] = "/nonexistent"

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "apps/exemplar/run_words.h"
+#include "gpu/runtime/device/switches.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/text.h"
@@ -57,6 +58,7 @@ std::string compiled_glsl(const std::filesystem::path& path, const std::vector<s
     const std::string output = (folder.path() / "shader.spv").string();
     // With 1.3, local sizes from specialization constants would need a feature that devices are opened without.
     std::vector<std::string> words{"glslangValidator", "--quiet", "--target-env", "vulkan1.2", "-S", "comp"};
+    if (environment_switches().checks_shaders) words.emplace_back("-g");  // so that messages name lines
     for (const std::filesystem::path& include : includes) words.push_back(fmt::format("-I{}", include.string()));
     words.insert(words.end(), {"-o", output, path.string()});
     const ProgramOutput run = run_words(words);

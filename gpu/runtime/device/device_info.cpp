@@ -219,7 +219,7 @@ bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
 
 std::vector<DeviceInfo> list_devices() {
     try {
-        const Instance instance(false);
+        const Instance instance(Validation::none);
         return instance.devices();
     } catch (const NoDeviceError&) {
         return {};

@@ -56,7 +56,7 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(PFN_vkDebugUtilsMessengerCallb
 }  // namespace
 
 // Delegates to the default constructor, so that the destructor runs if create() throws.
-Instance::Instance(bool validation, const std::vector<std::string>& extensions) : Instance() {
+Instance::Instance(Validation validation, const std::vector<std::string>& extensions) : Instance() {
     require_loader();
     create(validation, extensions);
 }
@@ -66,25 +66,27 @@ Instance::Instance(VkInstance existing, PFN_vkGetInstanceProcAddr from) : instan
     load_vulkan_functions(existing, from);
 }
 
-void Instance::create(bool validation, const std::vector<std::string>& wanted_extensions) {
-    if (validation && !has_layer(k_validation_layer))
+void Instance::create(Validation validation, const std::vector<std::string>& wanted_extensions) {
+    const bool validates = validation != Validation::none;
+    if (validates && !has_layer(k_validation_layer))
         throw DeviceError(
             "EXEMPLAR_VALIDATION is set but the validation layer is missing; install vulkan-validationlayers");
     std::vector<const char*> layers, extensions;
-    if (validation) layers.push_back(k_validation_layer);
+    if (validates) layers.push_back(k_validation_layer);
     // Names of kernels in captures. The layer has the extension even where no driver does.
-    names_objects_ = validation || has_instance_extension(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    names_objects_ = validates || has_instance_extension(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (names_objects_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     // Drivers that translate to another interface, such as MoltenVK, are listed only if asked for.
     const bool portable = has_instance_extension(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
     if (portable) extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
     for (const std::string& extension : wanted_extensions) extensions.push_back(extension.c_str());
     VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(&Instance::collect, log_.get());
-    const VkValidationFeatureEnableEXT enabled = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    std::vector<VkValidationFeatureEnableEXT> enabled{VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    if (validation == Validation::shaders) enabled.push_back(VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT);
     const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
                                            .pNext = &messenger,
-                                           .enabledValidationFeatureCount = 1,
-                                           .pEnabledValidationFeatures = &enabled,
+                                           .enabledValidationFeatureCount = static_cast<std::uint32_t>(enabled.size()),
+                                           .pEnabledValidationFeatures = enabled.data(),
                                            .disabledValidationFeatureCount = 0,
                                            .pDisabledValidationFeatures = nullptr};
     const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
@@ -96,7 +98,7 @@ void Instance::create(bool validation, const std::vector<std::string>& wanted_ex
                                         .apiVersion = VK_API_VERSION_1_3};
     const VkInstanceCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-        .pNext = validation ? &features : nullptr,
+        .pNext = validates ? &features : nullptr,
         .flags = portable ? VkInstanceCreateFlags{VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR} : 0,
         .pApplicationInfo = &application,
         .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
@@ -111,7 +113,7 @@ void Instance::create(bool validation, const std::vector<std::string>& wanted_ex
                                       fmt::join(wanted_extensions, ", ")));
     check(result, "create a Vulkan instance");
     load_vulkan_functions(instance_);
-    if (!validation) return;
+    if (!validates) return;
     if (vkCreateDebugUtilsMessengerEXT)
         check(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_),
               "listen to the validation layer");

@@ -31,12 +31,19 @@ class ValidationLog {
     std::vector<std::string> messages_;
 };
 
+/// What the validation layer looks at.
+enum class Validation {
+    none,     ///< it is not loaded
+    calls,    ///< calls, and the order of accesses (synchronization validation)
+    shaders,  ///< also every access of shaders (GPU-assisted validation)
+};
+
 /// A Vulkan instance. Collects the messages of the validation layer.
 class Instance {
   public:
-    /// `validation` loads VK_LAYER_KHRONOS_validation with synchronization validation. Throws NoDeviceError if there
-    /// is no loader, DeviceError if the layer or one of `extensions` is missing.
-    explicit Instance(bool validation, const std::vector<std::string>& extensions = {});
+    /// Throws NoDeviceError if there is no loader, DeviceError if the layer VK_LAYER_KHRONOS_validation or one of
+    /// `extensions` is missing.
+    explicit Instance(Validation validation, const std::vector<std::string>& extensions = {});
     /// Uses an instance of the caller's, which must outlive this. `from` as for load_vulkan_functions.
     Instance(VkInstance existing, PFN_vkGetInstanceProcAddr from);
     ~Instance();
@@ -55,7 +62,7 @@ class Instance {
     static VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                   VkDebugUtilsMessageTypeFlagsEXT,
                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
-    void create(bool validation, const std::vector<std::string>& wanted_extensions);
+    void create(Validation validation, const std::vector<std::string>& wanted_extensions);
     VkInstance instance_ = VK_NULL_HANDLE;
     bool owns_ = true;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;

@@ -30,6 +30,7 @@ bool is_set(const char* variable, std::string_view only) {
 
 DeviceSwitches environment_switches() {
     return {.validates = !value_of("EXEMPLAR_VALIDATION").empty(),
+            .checks_shaders = value_of("EXEMPLAR_VALIDATION") == "gpu",
             .maps_memory = !is_set("EXEMPLAR_MEMORY", "unmapped"),
             .prefers_host = !is_set("EXEMPLAR_HOST", "never"),
             .prefers_card_kernels = is_set("EXEMPLAR_KERNELS", "card"),

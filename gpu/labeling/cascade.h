@@ -30,7 +30,7 @@ inline constexpr TunableParameter k_linear_rows{"labeling/context_linear.comp", 
 /// histograms, linear classifiers and predictions stay on the device. Each further classifier of the edges is a
 /// submission, as the host computes its few contextual columns. Probabilities agree with those of the same classifiers
 /// one by one (GpuStumpScorer, GpuContextHistograms) except where a histogram, summed in another order, falls on the
-/// other side of a threshold.
+/// other side of a threshold. In FaceScores::seconds, the first submission counts as "unary".
 class GpuCascade final : public CascadeScorer {
   public:
     /// `scorer` must outlive this. `tile_bytes` limits the size of each buffer below the device's own limits.

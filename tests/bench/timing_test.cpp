@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "apps/bench/kernels/measurement.h"
 #include "gpu/runtime/vulkan/errors.h"
 #include "host/core/stopwatch.h"
 
@@ -56,6 +57,18 @@ TEST(Timing, OperationsWithoutTimestampsAreRefused) {
     operation.run = [] {};
     Profiler profiler;
     EXPECT_THROW(time_in_turns(std::vector<Timed>{{"none", &operation, &profiler}}, {}), DeviceError);
+}
+
+TEST(Shares, AreOfTheTimeWithoutTheLaunch) {
+    KernelRow row{.kernel = "a", .milliseconds = {4, 2, 3}, .work = {.bytes = 6e9, .operations = 3e9}};
+    Ceilings ceilings;
+    ceilings.copy_gb_per_s = 6000;
+    ceilings.fma_gflop_per_s = 30000;
+    ceilings.launch_us = 1000;
+    EXPECT_NEAR(shares_of(row, ceilings).of_copy, 0.5, 1e-12);  // 6 GB in 2 ms
+    EXPECT_NEAR(shares_of(row, ceilings).of_multiply_add, 0.05, 1e-12);
+    row.milliseconds = {1};  // nothing but a launch: a tenth of it counts
+    EXPECT_NEAR(shares_of(row, ceilings).of_copy, 10, 1e-12);
 }
 
 }  // namespace

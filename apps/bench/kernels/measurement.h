@@ -35,7 +35,8 @@ struct Measurement {
     bool fits() const;
 };
 
-/// A speed as shares of the device's ceilings. The larger one tells what limits a kernel.
+/// A speed as shares of the device's ceilings, once the launch of a dispatch is taken from the time. The larger one
+/// tells what limits a kernel.
 struct Shares {
     double of_copy = 0, of_multiply_add = 0;
 };

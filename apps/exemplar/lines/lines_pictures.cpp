@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <future>
 #include <optional>
+#include <utility>
 
 #include "apps/exemplar/lines/frame_drawer.h"
 #include "apps/exemplar/lines/lines_comparison.h"
@@ -23,14 +25,19 @@ namespace fs = std::filesystem;
 
 using DrawFrame = std::function<Image(std::size_t)>;
 
-/// Calls use(image, number of the frame) for all frames.
+/// Calls use(image, number of the frame) for all frames, one after the other, in a thread of its own: while the device
+/// draws a frame, the last one is compressed and written.
 void draw_frames(const DrawFrame& draw, std::size_t count, const std::function<void(const Image&, std::size_t)>& use) {
     Progress progress = count > 1 ? Progress("drawing", count) : Progress();
+    std::future<void> last;  // its destructor waits
     for (std::size_t frame = 0; frame < count; ++frame) {
         check_interrupt();
-        use(draw(frame), frame);
+        Image image = draw(frame);
+        if (last.valid()) last.get();
+        last = std::async(std::launch::async, [&use, frame, image = std::move(image)] { use(image, frame); });
         progress.advance();
     }
+    if (last.valid()) last.get();
 }
 
 void write_video(const LinesJob& job, LinesSource& source, const DrawFrame& draw, int width, int height) {

@@ -123,6 +123,7 @@ struct CascadeParity : testing::Test {
     }
     static std::vector<MeshFeatures*> pointers(std::vector<MeshFeatures>& meshes) {
         std::vector<MeshFeatures*> result;
+        result.reserve(meshes.size());
         for (MeshFeatures& mesh : meshes) result.push_back(&mesh);
         return result;
     }
@@ -144,7 +145,8 @@ void expect_near_probabilities(const std::vector<float>& actual, const std::vect
         }
         others += largest > k_probability_tolerance ? 1 : 0;
     }
-    EXPECT_LE(static_cast<double>(others), k_most_other_answers * static_cast<double>(actual.size() / classes));
+    const std::size_t rows = actual.size() / classes;
+    EXPECT_LE(static_cast<double>(others), k_most_other_answers * static_cast<double>(rows));
 }
 
 void expect_near_scores(const FaceScores& actual, const FaceScores& expected, std::size_t classes) {
@@ -156,6 +158,7 @@ std::vector<FaceScores> reference(const LabelingModel& model, std::vector<MeshFe
     CpuStumpScorer stumps;
     CpuContextHistograms context;
     std::vector<MeshFeatures*> all;
+    all.reserve(meshes.size());
     for (MeshFeatures& mesh : meshes) all.push_back(&mesh);
     return score_faces(model, all, {stumps, context});
 }

@@ -54,7 +54,7 @@ std::map<std::string, Work> histogram_work(std::size_t face_count) {
              {.bytes = 4 * k_context_axes * k_samples + 4 * masses * (1 + k_context_axes),
               .operations = k_context_axes * masses}},
             {"labeling/context_geodesic.comp",
-             {.bytes = faces * (k_samples / 2 + 4 * k_context_bins * k_label_classes),
+             {.bytes = faces * (0.5 * k_samples + 4 * k_context_bins * k_label_classes),
               .operations = faces * k_samples * k_label_classes}},
             {"labeling/context_axes.comp",
              {.bytes = faces * 4 * (k_context_axes + of_axes), .operations = faces * (2 * searches + 3 * of_axes)}}};

@@ -109,7 +109,8 @@ Shares shares_of(const KernelRow& row, const Ceilings& ceilings) {
     // Of a time near that of a launch, what is left is noise.
     constexpr double k_least_left = 0.1;
     const double all = row.median_milliseconds(), left = std::max(all - 1e-3 * ceilings.launch_us, k_least_left * all);
-    return {row.gb_per_s() / ceilings.copy_gb_per_s * all / left, row.gop_per_s() / ceilings.fma_gflop_per_s * all / left};
+    return {row.gb_per_s() / ceilings.copy_gb_per_s * all / left,
+            row.gop_per_s() / ceilings.fma_gflop_per_s * all / left};
 }
 
 KernelFilter::KernelFilter(const std::string& expression) : expression_(expression) {

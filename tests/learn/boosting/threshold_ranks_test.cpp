@@ -73,6 +73,29 @@ TEST(ThresholdRanks, AnswerAsTheValuesDoOfManyThresholds) {
     }
 }
 
+// From the middle of the type's range on they are in order as signed numbers, of as many thresholds as a byte counts.
+TEST(ThresholdRanks, CountFromTheLowest) {
+    for (const std::size_t count : {3U, 128U, 255U}) {
+        std::vector<float> thresholds, values;
+        for (std::size_t i = 0; i < count; ++i) thresholds.push_back(static_cast<float>(i));
+        for (std::size_t i = 0; i <= count; ++i) values.push_back(static_cast<float>(i) - 0.5F);
+        std::vector<std::uint8_t> ranks(values.size());
+        rank(values, thresholds, std::span(ranks), 128);
+        for (std::size_t i = 0; i < ranks.size(); ++i)
+            ASSERT_EQ(static_cast<std::int8_t>(ranks[i]), static_cast<int>(i) - 128) << count;
+    }
+}
+
+TEST(ThresholdRanks, MergedListsHaveTheThresholdsOfAll) {
+    const std::vector<std::vector<FeatureThresholds>> lists{{{2, {1, 3}}, {5, {0}}}, {}, {{2, {2, 3}}, {4, {7}}}};
+    const std::vector<FeatureThresholds> all = merged(lists);
+    ASSERT_EQ(all.size(), 3U);
+    EXPECT_EQ(all[0].feature, 2U);
+    EXPECT_EQ(all[0].thresholds, (std::vector<float>{1, 2, 3}));
+    EXPECT_EQ(all[1].feature, 4U);
+    EXPECT_EQ(all[2].thresholds, (std::vector<float>{0}));
+}
+
 TEST(ThresholdRanks, AnyNumberOfValues) {
     EXPECT_TRUE(ranks_of<std::uint8_t>({}, {1, 2}).empty());
     for (const std::size_t count : {1U, 511U, 512U, 513U, 1500U}) {

@@ -36,13 +36,14 @@ class GpuHatchingEvaluator final : public HatchingEvaluator {
     static std::vector<std::uint32_t> fields_of(std::span<const OrientationFunction> functions);
     /// Records the directions (doubled angles) of rows. `segments` has the number of a function for each row, `fields`
     /// the fields of fields_of, `stride` doubled angles each (at least `rows`). A row without direction gets (0, 0).
+    /// Without fields, `fields` is not read, but must hold one.
     void record_orientations(Stream& stream, std::span<const OrientationFunction> functions, const Buffer& segments,
                              const Buffer& fields, std::size_t rows, std::size_t stride, const Buffer& directions);
     /// Returns the numbers of the base features that a property uses, rising.
     static std::vector<std::uint32_t> features_of(const PropertyModel& model);
     /// Records a property of rows. `columns` has the features of features_of, `stride` floats each: a multiple of 4, at
-    /// least `rows`. Values must be finite, of magnitude 1e19 at most; -2e30 stands for no value. Writes a float for
-    /// each row, up to a multiple of 4.
+    /// least `rows`. Values must be finite, of magnitude 1e19 at most; -2e30 stands for no value. `values` needs
+    /// `stride` floats, too. Without features, `columns` is not read, but must hold one column.
     void record_property(Stream& stream, const PropertyModel& model, const Buffer& columns, std::size_t rows,
                          std::size_t stride, const Buffer& values);
 

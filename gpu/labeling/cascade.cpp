@@ -7,7 +7,7 @@
 
 #include "embedded/labeling_context_linear_comp.h"
 #include "embedded/labeling_context_ranks_comp.h"
-#include "embedded/labeling_pool_comp.h"
+#include "embedded/labeling_prediction_comp.h"
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 #include "host/core/stopwatch.h"
@@ -20,7 +20,7 @@ namespace {
 
 using Meshes = std::span<MeshFeatures* const>;
 using shared::LinearParameters;
-using shared::PoolParameters;
+using shared::PredictionParameters;
 using shared::RankedColumn;
 using shared::RankParameters;
 using shared::uvec4;
@@ -153,7 +153,7 @@ std::size_t GpuCascade::fitting(const LabelingModel& model, Meshes meshes) const
                                             model.unary.size() * classes * all_faces * sizeof(float)});
         const std::size_t texels = std::max(context.texels, ranks / sizeof(std::uint32_t));
         if (samples == 0 || samples > k_max_iterations || rows == 0 || bytes > tile_bytes_ ||
-            texels > device_.info().max_texels)
+            texels > device_.info().max_texels || count == k_max_context_works)
             break;
         ++count;
     }
@@ -161,6 +161,19 @@ std::size_t GpuCascade::fitting(const LabelingModel& model, Meshes meshes) const
 }
 
 std::vector<FaceScores> GpuCascade::score(const LabelingModel& model, Meshes meshes) {
+    for (const MeshFeatures* mesh : meshes) check_geometry(mesh->context);
+    try {
+        return score_checked(model, meshes);
+    } catch (...) {  // as memory is used up, for example: fewer meshes may fit
+        stream_.discard();
+        for (Buffer* const buffer : {&face_ranks_, &edge_ranks_, &stumps_, &prediction_, &means_, &linear_, &boundary_})
+            *buffer = {};
+        context_.release();
+        throw;
+    }
+}
+
+std::vector<FaceScores> GpuCascade::score_checked(const LabelingModel& model, Meshes meshes) {
     const Stopwatch watch;
     const Columns of_faces(model.unary, model.unary_names.size()),
         of_edges(model.pairwise, model.pairwise_names.size());
@@ -176,35 +189,34 @@ std::vector<FaceScores> GpuCascade::score(const LabelingModel& model, Meshes mes
 
     std::vector<FaceScores> scores(meshes.size());
     std::vector<std::vector<float>> of_both(meshes.size());  // the boundaries' two classes
-    std::vector<BufferReadback> face_parts, edge_parts;
+    std::vector<BufferReadback> parts, edge_parts;
     for (std::size_t m = 0; m < meshes.size(); ++m) {
         scores[m].probabilities.resize(meshes[m]->unary.rows * classes);
         scores[m].boundary.assign(meshes[m]->edges.size(), k_unknown_boundary_probability);
-        face_parts.push_back({&prediction_, rows.first_face[m] * classes * sizeof(float),
-                              std::as_writable_bytes(std::span(scores[m].probabilities))});
+        parts.push_back({&prediction_, rows.first_face[m] * classes * sizeof(float),
+                         std::as_writable_bytes(std::span(scores[m].probabilities))});
         if (!has_edges || meshes[m]->edges.empty()) continue;
         of_both[m].resize(2 * meshes[m]->edges.size());
         edge_parts.push_back(
             {&boundary_, rows.first_edge[m] * 2 * sizeof(float), std::as_writable_bytes(std::span(of_both[m]))});
     }
-    std::vector<BufferReadback> parts = face_parts;
     parts.insert(parts.end(), edge_parts.begin(), edge_parts.end());
     stream_.fetch(parts);
     const double first_seconds = watch.wall();
     add_seconds("unary", first_seconds, scores);
 
-    const auto take_boundaries = [&] {
+    const auto copy_boundaries = [&] {
         for (std::size_t m = 0; m < meshes.size(); ++m)
             if (!of_both[m].empty()) scores[m].boundary = boundary_column(of_both[m]);
     };
     if (has_edges) {
-        take_boundaries();
+        copy_boundaries();
         for (std::size_t stage = 1; stage < model.pairwise.size(); ++stage) {
             check_interrupt();
             upload_edge_context(of_edges, stage, rows, meshes, scores);
             record_boundary(model, of_edges, stage, rows);
             stream_.fetch(edge_parts);
-            take_boundaries();
+            copy_boundaries();
         }
     }
     add_seconds("pairwise", watch.wall() - first_seconds, scores);
@@ -245,7 +257,8 @@ void GpuCascade::upload_geometry(const Rows& rows, Meshes meshes, std::size_t cl
     context_.upload(stream_, works, k_geodesic_columns * classes * rows.faces);
 }
 
-// Records the upload of what the linear classifier of a stage makes of the base features.
+// Records the upload of the scores of a stage's linear classifier for the base features, which the host computes: the
+// device has only their ranks.
 void GpuCascade::upload_linear(const LabelingModel& model, std::size_t stage, const Rows& rows, Meshes meshes) {
     const LinearClassifier base = base_part(model.linear[stage].classifier, model.unary_names.size());
     const std::size_t classes = model.class_count(), bytes = rows.faces * classes * sizeof(float);
@@ -276,7 +289,7 @@ void GpuCascade::record_unary(const LabelingModel& model, const Columns& columns
         const CalibratedStumps& stumps = model.unary[stage];
         scorer_.record_ranks(stream_, stumps.stumps, stumps.link, stumps.scale, columns.of_stage(stage), face_ranks_,
                              rows.faces, rows.faces, stumps_);
-        record_pool(model, stage, rows);
+        record_prediction(model, stage, rows);
     }
 }
 
@@ -303,7 +316,7 @@ void GpuCascade::record_context_ranks(const Columns& columns, std::size_t stage,
                                     static_cast<std::uint32_t>(k_geodesic_columns * classes)});
 }
 
-// Records what the linear classifier of a stage adds for the histograms.
+// Records the addition of the scores of a stage's linear classifier for the histograms.
 void GpuCascade::record_linear(const LinearClassifier& classifier, std::size_t base, const Rows& rows,
                                const BufferRange& scores) {
     const std::vector<vec4> weights = context_part(classifier, base);
@@ -316,37 +329,37 @@ void GpuCascade::record_linear(const LinearClassifier& classifier, std::size_t b
                                       static_cast<std::uint32_t>(threads)});
 }
 
-const Kernel& GpuCascade::pool_kernel(std::uint32_t classes) {
-    Kernel& kernel = pool_kernels_[classes];
+const Kernel& GpuCascade::prediction_kernel(std::uint32_t classes) {
+    Kernel& kernel = prediction_kernels_[classes];
     if (!kernel)
-        kernel = Kernel(device_, shaders::labeling_pool_comp,
-                        {.push_constants = layout_of<PoolParameters>(),
+        kernel = Kernel(device_, shaders::labeling_prediction_comp,
+                        {.push_constants = layout_of<PredictionParameters>(),
                          .elements = {layout_of<float>(), layout_of<float>(), layout_of<float>(), layout_of<float>()},
                          .constants = {{0, classes}}});
     return kernel;
 }
 
 // Records the combination of a stage's stumps with its linear classifier and with the stages before.
-void GpuCascade::record_pool(const LabelingModel& model, std::size_t stage, const Rows& rows) {
+void GpuCascade::record_prediction(const LabelingModel& model, std::size_t stage, const Rows& rows) {
     const std::size_t classes = model.class_count(), bytes = rows.faces * classes * sizeof(float);
     const BufferRange linear(linear_, stage * bytes, bytes);
-    PoolParameters parameters{.rows = static_cast<std::uint32_t>(rows.faces),
-                              .pools = 0,
-                              .ratio = 0,
-                              .scale = 1,
-                              .stages = static_cast<float>(stage + 1),
-                              .averaged_low = 0,
-                              .averaged_high = 0};
+    PredictionParameters parameters{.rows = static_cast<std::uint32_t>(rows.faces),
+                                    .combines = 0,
+                                    .ratio = 0,
+                                    .scale = 1,
+                                    .stages = static_cast<float>(stage + 1),
+                                    .averaged_low = 0,
+                                    .averaged_high = 0};
     for (const std::uint32_t c : model.averaged_labels)
         (c < 32 ? parameters.averaged_low : parameters.averaged_high) |= 1U << (c % 32);
     if (stage < model.linear.size() && model.linear[stage].used()) {
         const LinearExpert& expert = model.linear[stage];
-        parameters.pools = 1;
+        parameters.combines = 1;
         parameters.ratio = expert.ratio;
         parameters.scale = expert.scale;
         record_linear(expert.classifier, model.unary_names.size(), rows, linear);
     }
-    stream_.dispatch(pool_kernel(static_cast<std::uint32_t>(classes)), rows.faces,
+    stream_.dispatch(prediction_kernel(static_cast<std::uint32_t>(classes)), rows.faces,
                      {stumps_, linear, means_, prediction_}, parameters);
 }
 

@@ -7,7 +7,6 @@ namespace exemplar {
 namespace {
 
 constexpr std::size_t k_columns_per_class = k_context_measures * k_context_bins;
-constexpr std::size_t k_max_parts = 65'535;  // of a submission: the workgroups along z that every device has
 
 // Returns the largest count, at least one, for which a demand is within the limits. Demands rise with the count.
 template <typename Demand>
@@ -58,10 +57,7 @@ void for_each_column(const Part& part, Use&& use) {
 }  // namespace
 
 GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler, std::size_t tile_bytes)
-    : device_(device),
-      tile_bytes_(buffer_limit(device.info(), tile_bytes)),
-      stream_(device, profiler),
-      kernels_(device) {}
+    : device_(device), tile_bytes_(buffer_limit(device.info(), tile_bytes)), stream_(device, profiler) {}
 
 void GpuContextHistograms::accumulate_all(std::span<const ContextMesh> meshes, std::size_t classes) {
     for (const ContextMesh& mesh : meshes) check_context(mesh, classes);
@@ -70,9 +66,15 @@ void GpuContextHistograms::accumulate_all(std::span<const ContextMesh> meshes, s
         if (mesh.geometry->sample_face.empty()) std::ranges::fill(mesh.out, 0.0f);
         add_parts(mesh, classes, parts);
     }
+    if (!kernels_) kernels_.emplace(device_);
     for (std::span<const Part> left = parts; !left.empty();) {
         const std::size_t count = together(left);
-        run(left.first(count));
+        try {
+            run(left.first(count));
+        } catch (...) {
+            stream_.discard();
+            throw;
+        }
         left = left.subspan(count);
     }
 }
@@ -110,7 +112,8 @@ std::size_t GpuContextHistograms::together(std::span<const Part> parts) const {
         const ContextDemand more = demand_of(part.samples.count, part.faces.count, part.classes.count);
         all.bytes += more.bytes;
         all.texels += more.texels;
-        const bool fits = all.bytes <= tile_bytes_ && all.texels <= device_.info().max_texels && count < k_max_parts;
+        const bool fits =
+            all.bytes <= tile_bytes_ && all.texels <= device_.info().max_texels && count < k_max_context_works;
         if (count > 0 && !fits) break;
         ++count;
     }
@@ -142,10 +145,10 @@ void GpuContextHistograms::run(std::span<const Part> parts) {
         }
         works.push_back(std::move(work));
     }
-    kernels_.upload(stream_, works, geodesic_floats);
+    kernels_->upload(stream_, works, geodesic_floats);
     reserve(device_, probabilities_, probabilities.size() * sizeof(float));
     stream_.upload<float>(probabilities_, probabilities);
-    kernels_.record(stream_, probabilities_, parts.front().all_classes);
+    kernels_->record(stream_, probabilities_, parts.front().all_classes);
     fetch(parts, works);
 }
 
@@ -173,7 +176,7 @@ void GpuContextHistograms::fetch(std::span<const Part> parts, std::span<const Co
             const bool geodesic = column < of_geodesic;
             const std::size_t first = geodesic ? works[i].first_geodesic + column * out.size()
                                                : works[i].first_axes + (column - of_geodesic) * out.size();
-            add_fetched({geodesic ? &kernels_.geodesic() : &kernels_.axes(), first * sizeof(float),
+            add_fetched({geodesic ? &kernels_->geodesic() : &kernels_->axes(), first * sizeof(float),
                          std::as_writable_bytes(target)},
                         fetched);
         });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,9 +41,9 @@ class GpuContextHistograms final : public ContextHistograms {
     Device& device_;
     std::size_t tile_bytes_;
     Stream stream_;
-    ContextKernels kernels_;
-    Buffer probabilities_;      // samples x classes
-    std::vector<float> later_;  // histograms of all but the first range of samples, on the host
+    std::optional<ContextKernels> kernels_;  // made at first use
+    Buffer probabilities_;                   // samples x classes
+    std::vector<float> later_;               // histograms of all but the first range of samples, on the host
 };
 
 }  // namespace exemplar

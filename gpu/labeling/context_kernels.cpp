@@ -28,8 +28,6 @@ constexpr std::uint32_t k_range_bits = 4, k_range_mask = (1U << k_range_bits) - 
 constexpr std::size_t k_ranges_of_word = 32 / k_range_bits;
 static_assert((k_no_bin & k_range_mask) >= k_context_bins && 4 * k_ranges_of_word == k_sample_block);
 
-constexpr std::size_t k_prefix_runs = 64;  // the local size of context_prefixes.comp
-
 std::size_t sample_blocks(std::size_t samples) {
     return (samples + k_sample_block - 1) / k_sample_block;
 }
@@ -86,9 +84,11 @@ std::vector<std::uint32_t> order_along(const ContextWork& work, std::size_t axis
 ContextDemand demand_of(std::size_t samples, std::size_t faces, std::size_t classes) {
     const std::size_t ranges = sample_blocks(samples) * faces;
     const std::size_t prefixes = k_context_axes * class_blocks(classes) * (samples + 1);
+    const std::size_t masses = class_blocks(classes) * sample_blocks(samples) * k_sample_block;
     const std::size_t histograms = k_context_axes * k_context_bins * classes * faces;
-    return {std::max({ranges * sizeof(uvec4), prefixes * sizeof(vec4), histograms * sizeof(float)}),
-            std::max({ranges, prefixes, k_context_axes * std::max(faces, samples)})};
+    return {
+        std::max({ranges * sizeof(uvec4), prefixes * sizeof(vec4), masses * sizeof(vec4), histograms * sizeof(float)}),
+        std::max({ranges, prefixes, masses, k_context_axes * std::max(faces, samples)})};
 }
 
 ContextKernels::ContextKernels(Device& device)
@@ -108,6 +108,12 @@ ContextKernels::ContextKernels(Device& device)
       axes_kernel_(device, shaders::labeling_context_axes_comp,
                    {.elements = {layout_of<ContextPart>(), layout_of<float>(), layout_of<float>(), layout_of<vec4>(),
                                  layout_of<float>()}}) {}
+
+void ContextKernels::release() {
+    for (Buffer* const buffer : {&parts_, &ranges_of_, &positions_, &sample_rows_, &sorted_, &orders_, &masses_,
+                                 &prefixes_, &geodesic_, &axes_})
+        *buffer = {};
+}
 
 void ContextKernels::upload(Stream& stream, std::span<const ContextWork> works, std::size_t geodesic_floats) {
     works_ = works.size();
@@ -214,7 +220,7 @@ void ContextKernels::record(Stream& stream, const Buffer& probabilities, std::si
     const std::size_t blocks = class_blocks(max_classes_);
     stream.dispatch(mass_kernel_, Threads(k_sample_block * sample_blocks(max_samples_), blocks, works_),
                     {parts_, sample_rows_, probabilities, masses_}, MassParameters{to_uint(all_classes)});
-    stream.dispatch(prefix_kernel_, Threads(k_prefix_runs * k_context_axes, blocks, works_),
+    stream.dispatch(prefix_kernel_, Threads(shared::k_prefix_runs * k_context_axes, blocks, works_),
                     {parts_, orders_, masses_, prefixes_});
     stream.dispatch(geodesic_kernel_, Threads((max_faces_ + faces_per_thread_ - 1) / faces_per_thread_, blocks, works_),
                     {parts_, ranges_of_, masses_, geodesic_});

@@ -39,7 +39,10 @@ struct ContextWork {
     std::size_t first_geodesic, first_axes, stride;
 };
 
-/// What a work takes: bytes of its largest buffer, and of the texels of one.
+/// Most works at a time: the workgroups along z that every device has.
+constexpr std::size_t k_max_context_works = 65'535;
+
+/// What a work takes: the bytes of its largest buffer, and the most texels that it adds to one.
 struct ContextDemand {
     std::size_t bytes = 0, texels = 0;
 };
@@ -55,6 +58,8 @@ class ContextKernels {
     void upload(Stream& stream, std::span<const ContextWork> works, std::size_t geodesic_floats);
     /// Records the histograms of `probabilities`: rows x all classes, of which a work uses its own.
     void record(Stream& stream, const Buffer& probabilities, std::size_t all_classes);
+    /// Frees all buffers.
+    void release();
     /// Column (measure * bins + bin) * classes + class begins at a work's first place plus the column times its stride;
     /// the measures of each buffer count from 0.
     const Buffer& geodesic() const { return geodesic_; }

@@ -29,7 +29,7 @@ static_assert(shared::k_link_softmax == static_cast<std::uint32_t>(Link::softmax
               shared::k_link_sigmoid == static_cast<std::uint32_t>(Link::sigmoid));
 
 constexpr std::uint32_t k_float_bits = 32, k_rank_bits = 8;
-// Ranks have their highest bit turned over, so that they are in order as signed numbers, which devices compare faster.
+// Ranks have their highest bit flipped, so that they are in order as signed numbers, which devices compare faster.
 constexpr std::uint32_t k_sign_bit = 0x80000000;
 // Distances of columns on the device are multiples of the largest group of items that invocations read together.
 static_assert(k_stump_stride == std::size_t{4} * k_stump_quad_counts.back() * shared::k_stump_neighbors);
@@ -273,8 +273,13 @@ void GpuStumpScorer::probabilities_of_all(const BoostedStumps& classifier, Link 
     const Classifier on_device{grouped, classifier.class_count, link, scale};
     const std::size_t tile_rows = rows_per_tile(on_device, rows);
     reserve(device_, probabilities_, tile_rows * classifier.class_count * sizeof(float));
-    for (std::size_t first = 0; first < rows; first += tile_rows)
-        score_tile(on_device, matrices, first, std::min(tile_rows, rows - first), tile_rows);
+    try {
+        for (std::size_t first = 0; first < rows; first += tile_rows)
+            score_tile(on_device, matrices, first, std::min(tile_rows, rows - first), tile_rows);
+    } catch (...) {
+        stream_.discard();
+        throw;
+    }
 }
 
 void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const ScoredMatrix> matrices, std::size_t first,
@@ -342,6 +347,13 @@ void GpuStumpScorer::record(Stream& stream, const BoostedStumps& classifier, Lin
 void GpuStumpScorer::record_ranks(Stream& stream, const BoostedStumps& classifier, Link link, float scale,
                                   std::span<const FeatureThresholds> columns, const Buffer& ranks, std::size_t rows,
                                   std::size_t stride, const Buffer& probabilities) {
+    for (const FeatureThresholds& needed : thresholds_of(classifier.stumps)) {
+        const auto column = std::ranges::lower_bound(columns, needed.feature, {}, &FeatureThresholds::feature);
+        if (column == columns.end() || column->feature != needed.feature ||
+            column->thresholds.size() > k_max_ranked_thresholds ||
+            !std::ranges::includes(column->thresholds, needed.thresholds))
+            throw UsageError(fmt::format("no column of ranks answers all stumps of feature {}", needed.feature));
+    }
     const DeviceStumps grouped = group(classifier, {columns.begin(), columns.end()}, k_rank_bits);
     record_columns(stream, {grouped, classifier.class_count, link, scale}, columns.size(), ranks, rows, stride,
                    probabilities);

@@ -36,8 +36,8 @@ inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp",     "bits", 
 constexpr std::size_t k_stump_stride = 256;
 /// Most thresholds of a column whose ranks are one byte each.
 constexpr std::size_t k_max_ranked_thresholds = 255;
-/// Writes the ranks of values among the thresholds of their column as GpuStumpScorer::record_ranks reads them: one byte
-/// each, 128 + rank, modulo 256.
+/// Writes the ranks of values among the thresholds of their column, at most k_max_ranked_thresholds, as
+/// GpuStumpScorer::record_ranks reads them: one byte each, 128 + rank, modulo 256.
 void write_ranks(std::span<const float> values, const FeatureThresholds& column, std::span<std::byte> memory);
 
 /// Boosted stumps on the device. Only the features that stumps use are uploaded, as floats or as ranks
@@ -61,7 +61,8 @@ class GpuStumpScorer final : public StumpScorer {
     void record(Stream& stream, const BoostedStumps& classifier, Link link, float scale, const Buffer& features,
                 std::size_t rows, std::size_t stride, const Buffer& probabilities);
     /// The same for ranks, of one byte each, as write_ranks writes them. Column i has the feature columns[i].feature
-    /// and its ranks among columns[i].thresholds, which include those of all stumps of this feature.
+    /// and its ranks among columns[i].thresholds. Features rise from column to column; each that a stump uses is there,
+    /// with all thresholds of its stumps and at most k_max_ranked_thresholds; else throws UsageError.
     void record_ranks(Stream& stream, const BoostedStumps& classifier, Link link, float scale,
                       std::span<const FeatureThresholds> columns, const Buffer& ranks, std::size_t rows,
                       std::size_t stride, const Buffer& probabilities);

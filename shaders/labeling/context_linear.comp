@@ -6,8 +6,8 @@
 #include "shaders/labeling/context_layout.glsl"
 #include "shaders/shared/context.h"
 
-// Adds to the scores of a linear classifier (LinearClassifier) what it makes of contextual histograms: k_rows rows (x)
-// and one block of four classes (y) per invocation. The rows of an invocation are `threads` apart, so that neighboring
+// Adds the part of a linear classifier (LinearClassifier) that reads contextual histograms to its scores: k_rows rows
+// (x) and one block of four classes (y) per invocation. The rows of an invocation are `threads` apart, so that neighboring
 // invocations read neighboring rows. Reads the histograms of a row, and reads and writes its scores.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_rows = 1;
@@ -17,8 +17,6 @@ layout(set = 0, binding = 1, std430) readonly buffer Axes { float axes[]; };    
 // Per column of the histograms: mean and inverse deviation, then the weights of each block of classes.
 layout(set = 0, binding = 2) vec4_table(Weights, weights);
 layout(set = 0, binding = 3, std430) buffer Scores { float scores[]; };  // rows x classes
-
-const float k_max_deviations = 5.0;  // LinearClassifier
 
 float standardized(float value, vec4 standard) {
     return clamp((value - standard.x) * standard.y, -k_max_deviations, k_max_deviations);

@@ -4,7 +4,7 @@
 #include "shaders/shared/context.h"
 
 // The masses that samples add to contextual histograms (thesis Eq. A.1): their area times the probability of a class.
-// One sample (x) and one block of four classes (y) of one part (z) per invocation; 20 bytes read and 16 written.
+// One sample (x) and one block of four classes (y) of one part (z) per invocation; 24 bytes read and 16 written.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { MassParameters parameters; };
 layout(set = 0, binding = 0, std430) readonly buffer Parts { ContextPart parts[]; };

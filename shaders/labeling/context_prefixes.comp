@@ -6,15 +6,14 @@
 // Prefix sums of the samples' masses in the order along an axis: one axis (x) and one block of four classes (y) of one
 // part (z) per workgroup. Each invocation sums a run of samples, adds the runs before it, and sums its run again. Runs
 // are added in their order, so that a sum that ends a run is the one that begins the next, and sums never fall.
-// Per sample 20 bytes read and 16 written.
-const uint k_runs = 64;
-layout(local_size_x = k_runs) in;
+// Per sample 20 bytes are read, twice, and 16 written.
+layout(local_size_x = k_prefix_runs) in;
 layout(set = 0, binding = 0, std430) readonly buffer Parts { ContextPart parts[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Orders { uint orders[]; };  // axes x samples, by rising position
 layout(set = 0, binding = 2, std430) readonly buffer Masses { vec4 masses[]; };
 layout(set = 0, binding = 3, std430) writeonly buffer Prefixes { vec4 prefixes[]; };
 
-shared vec4 run_sums[k_runs];
+shared vec4 run_sums[k_prefix_runs];
 
 void main() {
     const uint part = gl_WorkGroupID.z, block = gl_WorkGroupID.y, axis = gl_WorkGroupID.x;
@@ -22,7 +21,7 @@ void main() {
     if (block >= blocks) return;  // the whole workgroup
 
     const uint samples = parts[part].samples;
-    const uint own = gl_LocalInvocationID.x, run = (samples + k_runs - 1) / k_runs;
+    const uint own = gl_LocalInvocationID.x, run = (samples + k_prefix_runs - 1) / k_prefix_runs;
     const uint begin = min(own * run, samples), end = min(begin + run, samples);
     const uint order = k_context_axes * parts[part].first_sample + axis * samples;
     const uint mass = parts[part].masses + block * k_context_sample_block * sample_blocks(samples);

@@ -11,6 +11,15 @@ const uint k_context_sample_block = 32;
 // Classes per texel of masses.
 const uint k_context_class_block = 4;
 
+// Samples are summed in so many runs at a time.
+const uint k_prefix_runs = 64;
+
+// The values of LinearClassifier::k_max_deviations, and of k_min_combined_probability and k_no_probability of
+// host/labeling/inference.
+const float k_max_deviations = 5.0f;
+const float k_min_combined_probability = 1e-6f;
+const float k_no_probability = 1e-30f;
+
 // A mesh, or a part of one: some of its samples, faces and classes; and where its own begin in buffers that hold
 // several parts, in elements of these.
 struct ContextPart {
@@ -58,9 +67,9 @@ struct LinearParameters {
     uint threads;  // invocations along x that have work
 };
 
-struct PoolParameters {
+struct PredictionParameters {
     uint rows;
-    uint pools;  // 1: combines the stumps with a linear classifier
+    uint combines;  // 1: combines the stumps with a linear classifier
     float ratio;
     float scale;
     float stages;        // of the cascade so far, with this one
@@ -76,7 +85,7 @@ EXEMPLAR_LAYOUT(RankedColumn, source, target, first, groups)
 EXEMPLAR_LAYOUT(MassParameters, classes)
 EXEMPLAR_LAYOUT(RankParameters, rows, geodesic_count)
 EXEMPLAR_LAYOUT(LinearParameters, rows, classes, threads)
-EXEMPLAR_LAYOUT(PoolParameters, rows, pools, ratio, scale, stages, averaged_low, averaged_high)
+EXEMPLAR_LAYOUT(PredictionParameters, rows, combines, ratio, scale, stages, averaged_low, averaged_high)
 #endif
 
 SHARED_END

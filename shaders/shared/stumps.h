@@ -7,7 +7,7 @@ SHARED_BEGIN
 // One decision stump, without its classes.
 struct GroupedStump {
     uint column;     // of the uploaded features
-    uint threshold;  // bits of a float; or a rank: the largest word, as a signed number, of a feature that is not above it
+    uint threshold;  // bits of a float; or of ranks: a signed number that the words of ranks above the threshold exceed
     float above;
     float below;
 };

@@ -272,6 +272,44 @@ TEST_F(CascadeParity, RanksAreBytes) {
     EXPECT_EQ(cascade.fitting(model, all), 0U);
 }
 
+TEST_F(CascadeParity, ExtremeModels) {
+    std::vector<MeshFeatures> meshes = odd_meshes(), without_edges;
+    without_edges.push_back(random_mesh(40, 0, 7, random));
+    LabelingModel most = random_cascade(64, 2, true, 1, random), all_averaged = random_cascade(3, 2, true, 1, random),
+                  no_stumps = random_cascade(4, 3, true, 2, random);
+    all_averaged.averaged_labels = {0, 1, 2};
+    no_stumps.unary[1].stumps = {4, {}, {}};
+    no_stumps.pairwise[0].stumps = {2, {}, {}};
+    for (const LabelingModel* model : {&most, &all_averaged, &no_stumps})
+        for (std::vector<MeshFeatures>* some : {&meshes, &without_edges}) {
+            SCOPED_TRACE(model->class_count());
+            const std::vector<FaceScores> expected = reference(*model, *some),
+                                          actual = cascade.score(*model, pointers(*some));
+            for (std::size_t m = 0; m < some->size(); ++m)
+                expect_near_scores(actual[m], expected[m], model->class_count());
+        }
+}
+
+// A call that throws leaves nothing behind.
+TEST_F(CascadeParity, AfterAFailureItGoesOn) {
+    const LabelingModel model = random_cascade(4, 2, true, 2, random);
+    std::vector<MeshFeatures> meshes = odd_meshes();
+    const std::vector<FaceScores> expected = reference(model, meshes);
+    std::vector<MeshFeatures> broken = meshes;
+    broken[2].context.sample_face[3] = 300;  // no face
+    EXPECT_THROW(cascade.score(model, pointers(broken)), UsageError);
+    LabelingModel many_thresholds = model;  // seen when the faces are recorded already
+    for (int i = 0; i < 300; ++i)
+        many_thresholds.pairwise[0].stumps.stumps.push_back({3, 0.01F * static_cast<float>(i), 0.01F, -0.01F, 1});
+    many_thresholds.pairwise[0].stumps.elsewhere.assign(2 * many_thresholds.pairwise[0].stumps.stumps.size(), 0);
+    EXPECT_THROW(cascade.score(many_thresholds, pointers(meshes)), UsageError);
+    profiler.reset();
+    const std::vector<FaceScores> actual = cascade.score(model, pointers(meshes));
+    EXPECT_EQ(profiler.submissions(), 2U);
+    EXPECT_EQ(profiler.entries().at("labeling/prediction.comp").dispatches, 2U);
+    for (std::size_t m = 0; m < meshes.size(); ++m) expect_near_scores(actual[m], expected[m], 4);
+}
+
 TEST_F(CascadeParity, OtherFeaturesAreRefused) {
     const LabelingModel model = random_cascade(3, 2, false, 1, random);
     std::vector<MeshFeatures> meshes = odd_meshes();

@@ -33,7 +33,7 @@ const std::vector<KernelConstants>& all_constants() {
          {{0, "classes", {2, 8, 24}}, {1, "quads", {}}, {2, "storage", {}}, {3, "bits", {}}, {4, "in_parts", {0, 1}}}},
         {"labeling/context_geodesic.comp", {{0, "faces", {}}}},
         {"labeling/context_linear.comp", {{0, "rows", {}}}},
-        {"labeling/pool.comp", {{0, "classes", {2, 8, 24}}}},
+        {"labeling/prediction.comp", {{0, "classes", {2, 8, 24}}}},
         {"imaging/pack.comp", {{0, "masked", {0, 1}}}},
         {"imaging/mask_sums.comp", {{1, "outputs", {}}}},
         {"imaging/weighted_sums.comp", {{0, "orders", {1, 2, 3, 4}}, {1, "outputs", {}}, {2, "along_x", {0, 1}}}},

@@ -13,7 +13,7 @@
 #include "embedded/labeling_context_masses_comp.h"
 #include "embedded/labeling_context_prefixes_comp.h"
 #include "embedded/labeling_context_ranks_comp.h"
-#include "embedded/labeling_pool_comp.h"
+#include "embedded/labeling_prediction_comp.h"
 #include "embedded/learn_stumps_comp.h"
 #include "gpu/labeling/cascade.h"
 #include "gpu/labeling/context_histograms.h"
@@ -154,8 +154,8 @@ struct Cascade {
         return {{"share of faces with other probabilities", static_cast<double>(others) / faces, 2e-3}};
     }
     // Ranks: a comparison per threshold. Linear classifier: four operations per column, a product and a sum per class.
-    // In both stages, pooling: the logarithm, exp, two products, two sums, a maximum and a quotient per class; and
-    // stumps: a comparison, a selection and a sum, and five operations per class.
+    // In both stages, the prediction: the logarithm, exp, two products, two sums, a maximum and a quotient per class;
+    // and stumps: a comparison, a selection and a sum, and five operations per class.
     std::map<std::string, Work> work() const {
         const auto faces = static_cast<double>(mesh.unary.rows);
         std::vector<FeatureThresholds> columns = thresholds_of(model.unary[1].stumps.stumps);
@@ -167,7 +167,7 @@ struct Cascade {
         all["labeling/context_ranks.comp"] = {.bytes = 5 * ranks, .operations = faces * thresholds};
         all["labeling/context_linear.comp"] = {.bytes = 8 * values + 4 * faces * k_context_columns,
                                                .operations = faces * k_context_columns * (4 + 2 * k_label_classes)};
-        all["labeling/pool.comp"] = {.bytes = 2 * 12 * values, .operations = 2 * 8 * values};
+        all["labeling/prediction.comp"] = {.bytes = 2 * 12 * values, .operations = 2 * 8 * values};
         all["learn/stumps.comp"] = {.bytes = 2 * (faces * k_base_features + 4 * values) + ranks,
                                     .operations = 2 * (faces * 3 * k_stage_stumps + 5 * values)};
         return all;
@@ -196,7 +196,7 @@ std::vector<OperationKind> labeling_operations() {
              {&shaders::labeling_context_masses_comp, &shaders::labeling_context_prefixes_comp,
               &shaders::labeling_context_geodesic_comp, &shaders::labeling_context_axes_comp,
               &shaders::labeling_context_ranks_comp, &shaders::labeling_context_linear_comp,
-              &shaders::labeling_pool_comp, &shaders::learn_stumps_comp},
+              &shaders::labeling_prediction_comp, &shaders::learn_stumps_comp},
              {k_linear_rows},
              prepare_as<Cascade>}};
 }

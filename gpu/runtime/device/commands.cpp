@@ -57,6 +57,10 @@ Ticket Commands::submit(const SubmitOrder& order) {
     return ticket_;
 }
 
+void Commands::discard() {
+    if (state_ == State::recording) reset();
+}
+
 void Commands::wait() {
     if (state_ != State::submitted) return;
     device_.wait(ticket_);

@@ -52,6 +52,8 @@ class Commands {
     /// Ends recording with a barrier that makes all writes visible, submits, and returns at once. Discards what was
     /// recorded if it throws.
     Ticket submit(const SubmitOrder& order = {});
+    /// Drops what was recorded and not submitted.
+    void discard();
     /// Waits until submitted work is done, if there is any. Throws DeviceLostError if the device was lost.
     void wait();
 

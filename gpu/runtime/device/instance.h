@@ -35,7 +35,7 @@ class ValidationLog {
 enum class Validation {
     none,     ///< it is not loaded
     calls,    ///< calls, and the order of accesses (synchronization validation)
-    shaders,  ///< also every access of shaders (GPU-assisted validation)
+    shaders,  ///< also accesses of buffers in shaders (GPU-assisted validation)
 };
 
 /// A Vulkan instance. Collects the messages of the validation layer.

@@ -29,8 +29,9 @@ bool is_set(const char* variable, std::string_view only) {
 }  // namespace
 
 DeviceSwitches environment_switches() {
-    return {.validates = !value_of("EXEMPLAR_VALIDATION").empty(),
-            .checks_shaders = value_of("EXEMPLAR_VALIDATION") == "gpu",
+    const bool checks_shaders = value_of("EXEMPLAR_VALIDATION") == "gpu";
+    return {.validates = checks_shaders || is_set("EXEMPLAR_VALIDATION", "1"),
+            .checks_shaders = checks_shaders,
             .maps_memory = !is_set("EXEMPLAR_MEMORY", "unmapped"),
             .prefers_host = !is_set("EXEMPLAR_HOST", "never"),
             .prefers_card_kernels = is_set("EXEMPLAR_KERNELS", "card"),

@@ -266,6 +266,12 @@ Ticket Stream::submit(const SubmitOrder& order) {
     }
 }
 
+void Stream::discard() {
+    if (external_ || commands_.state() == Commands::State::submitted) return;
+    commands_.discard();
+    release();
+}
+
 void Stream::wait() {
     if (commands_.state() != Commands::State::submitted) return;
     commands_.wait();

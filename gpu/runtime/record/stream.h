@@ -135,6 +135,9 @@ class Stream {
     /// Delivers downloads and frees what the caller's commands needed.
     void retire();
 
+    /// Drops what was recorded and not submitted, for example after a call has thrown, so that the stream can be used
+    /// again. Not for commands of the caller's.
+    void discard();
     /// Submits the recorded work and returns at once; nothing may be recorded until wait(). Returns the submission's
     /// ticket for Device::wait.
     Ticket submit(const SubmitOrder& order = {});

@@ -101,7 +101,8 @@ class Batch {
         return k_bytes_per_shape + (k_bytes_per_face + k_bytes_per_sample * (samples - k_usual_samples)) * working +
                k_bytes_per_original_face * faces + reading_memory(file_bytes);
     }
-    /// Memory that scoring adds: per label the probabilities of two stages, and the contextual columns.
+    /// Most memory that scoring adds: per label the probabilities of two stages, and the contextual columns (not on a
+    /// card).
     static std::size_t memory_of_scores(const BatchShape& item) {
         if (!item.model) return 0;
         const std::size_t columns = k_context_measures * k_context_bins + 2;

@@ -47,15 +47,6 @@ void add_sample_masses(const ContextGeometry& geometry, std::span<const double> 
     }
 }
 
-void check_geometry(const ContextGeometry& geometry) {
-    const std::size_t samples = geometry.sample_face.size();
-    const bool consistent =
-        geometry.sample_area.size() == samples && geometry.geodesic_bin.size() == samples * geometry.faces &&
-        geometry.axis_position.size() == k_context_axes * geometry.faces &&
-        std::ranges::all_of(geometry.sample_face, [&](std::uint32_t face) { return face < geometry.faces; });
-    if (!consistent) throw UsageError("the sizes of a ContextGeometry contradict each other; compute it again");
-}
-
 void accumulate_reference(const ContextMesh& mesh, std::size_t classes) {
     const ContextGeometry& geometry = *mesh.geometry;
     const std::vector<double> masses = reference_masses(geometry, mesh.probabilities, classes);
@@ -72,6 +63,15 @@ void accumulate_reference(const ContextMesh& mesh, std::size_t classes) {
 }
 
 }  // namespace
+
+void check_geometry(const ContextGeometry& geometry) {
+    const std::size_t samples = geometry.sample_face.size();
+    const bool consistent =
+        geometry.sample_area.size() == samples && geometry.geodesic_bin.size() == samples * geometry.faces &&
+        geometry.axis_position.size() == k_context_axes * geometry.faces &&
+        std::ranges::all_of(geometry.sample_face, [&](std::uint32_t face) { return face < geometry.faces; });
+    if (!consistent) throw UsageError("the sizes of a ContextGeometry contradict each other; compute it again");
+}
 
 void check_context(const ContextMesh& mesh, std::size_t classes) {
     check_geometry(*mesh.geometry);

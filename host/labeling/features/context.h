@@ -56,6 +56,8 @@ class ContextHistograms {
     virtual void accumulate_all(std::span<const ContextMesh> meshes, std::size_t classes) = 0;
 };
 
+/// Throws UsageError if the sizes inside a geometry contradict each other, or a sample is no face of it.
+void check_geometry(const ContextGeometry& geometry);
 /// Throws UsageError if the sizes inside a mesh's geometry contradict each other, or its spans do not fit it.
 void check_context(const ContextMesh& mesh, std::size_t classes);
 

@@ -5,10 +5,6 @@
 
 namespace exemplar {
 
-namespace {
-constexpr float k_nothing = 1e-30F;  // below, the sum of the other probabilities counts as zero
-}
-
 void copy_class_probabilities(std::span<const std::uint32_t> taken, std::size_t classes, std::span<const float> source,
                               std::span<float> target) {
     if (taken.empty()) return;
@@ -19,7 +15,7 @@ void copy_class_probabilities(std::span<const std::uint32_t> taken, std::size_t 
         for (const std::uint32_t c : taken) rest -= from[c], to[c] = 0;
         const float others = std::accumulate(to.begin(), to.end(), 0.0F);
         const auto count = static_cast<float>(classes - taken.size());
-        for (float& p : to) p = (others > k_nothing ? p / others : 1 / count) * std::max(rest, 0.0F);
+        for (float& p : to) p = (others > k_no_probability ? p / others : 1 / count) * std::max(rest, 0.0F);
         for (const std::uint32_t c : taken) to[c] = from[c];
     }
 }

@@ -7,6 +7,9 @@
 
 namespace exemplar {
 
+/// Below, a sum of probabilities counts as zero.
+constexpr float k_no_probability = 1e-30F;
+
 /// Copies the probabilities of the classes `taken` from `source` to `target`, for each item. The other classes share
 /// the rest in their previous proportions, or equally if they had nothing. Both are items x classes.
 void copy_class_probabilities(std::span<const std::uint32_t> taken, std::size_t classes, std::span<const float> source,

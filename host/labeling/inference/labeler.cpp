@@ -166,9 +166,12 @@ std::vector<FaceScores> score_faces(const LabelingModel& model, std::span<MeshFe
     std::vector<FaceScores> scores;
     while (!meshes.empty()) {
         check_interrupt();
-        const std::size_t count = backend.cascade->fitting(model, meshes);
-        std::vector<FaceScores> some = count > 0 ? backend.cascade->score(model, meshes.first(count))
-                                                 : score_in_stages(model, meshes.first(1), backend);
+        std::size_t count = backend.cascade->fitting(model, meshes);
+        const bool fits = count > 0;
+        while (!fits && ++count < meshes.size() && backend.cascade->fitting(model, meshes.subspan(count)) == 0) {
+        }
+        std::vector<FaceScores> some = fits ? backend.cascade->score(model, meshes.first(count))
+                                            : score_in_stages(model, meshes.first(count), backend);
         meshes = meshes.subspan(some.size());
         std::ranges::move(some, std::back_inserter(scores));
     }

@@ -33,7 +33,7 @@ class CascadeScorer {
 struct LabelingBackend {
     StumpScorer& scorer;
     ContextHistograms& context;
-    CascadeScorer* cascade = nullptr;  ///< null: scorer and context in turns
+    CascadeScorer* cascade = nullptr;  ///< null: one classifier after the other
 };
 
 /// Result of inference for one mesh, per triangle.

@@ -15,12 +15,10 @@ namespace {
 
 constexpr std::array<double, 4> k_ridges{1e-4, 1e-3, 1e-2, 1e-1};
 constexpr std::array<float, 6> k_ratios{0.5F, 1, 2, 4, 8, 16};
-/// Lower bound of the stumps' probabilities in logarithms: a label that a fold never saw has probability 0.
-constexpr float k_min_pooled_probability = 1e-6F;
 constexpr std::array<Link, 1> k_pooled_links{Link::softmax};
 
 float log_of(float probability) {
-    return std::log(std::max(probability, k_min_pooled_probability));
+    return std::log(std::max(probability, k_min_combined_probability));
 }
 
 /// Clamps L to its targets 0 and 1. Values beyond say no more; on a mesh unlike those of training, whose features

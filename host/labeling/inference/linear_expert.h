@@ -10,6 +10,9 @@
 
 namespace exemplar {
 
+/// Lower bound of the stumps' probabilities in logarithms: a label that a fold never saw has probability 0.
+constexpr float k_min_combined_probability = 1e-6F;
+
 /// A linear classifier that is combined with boosted stumps. Stumps compare single features with thresholds and lose
 /// small parts that only many features together show; a linear classifier finds those, but knows no thresholds. The
 /// two are combined log-linearly. L_c is fitted to 0 and 1, and clamped, as it may lie far outside on a mesh unlike

@@ -7,25 +7,23 @@
 
 // Turns the stumps' probabilities of a stage into the cascade's prediction, one row per invocation: combines them with
 // a linear classifier (LinearExpert), then takes the mean over the stages for the averaged classes (CascadePrediction).
-// Per row and class 12 bytes are read, of these 4 only for averaged classes, and 4 or 8 written.
+// Per row and class 4 bytes are read and written, and 4 more are read if there is a linear classifier; if any class is
+// averaged, 4 more are read and written.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_classes = 1;
-layout(push_constant) uniform Push { PoolParameters parameters; };
+layout(push_constant) uniform Push { PredictionParameters parameters; };
 layout(set = 0, binding = 0, std430) readonly buffer Stumps { float stumps[]; };           // rows x classes
 layout(set = 0, binding = 1, std430) readonly buffer Linear { float linear[]; };           // the same
 layout(set = 0, binding = 2, std430) buffer Means { float means[]; };                      // of the stages so far
 layout(set = 0, binding = 3, std430) writeonly buffer Prediction { float prediction[]; };  // the same
 
-const float k_min_pooled_probability = 1e-6;  // a label that a fold never saw has probability 0
-const float k_nothing = 1e-30;                // below, the sum of the other probabilities counts as zero
-
 bool averaged(uint c) {
     return ((c < 32 ? parameters.averaged_low : parameters.averaged_high) >> (c % 32) & 1u) != 0;
 }
 
-// Takes the probabilities of the averaged classes from `source`. The other classes share the rest as before, or equally
+// Copies the probabilities of the averaged classes from `source`. The other classes share the rest as before, or equally
 // if they had nothing.
-void take_averaged(float source[k_classes], inout float target[k_classes]) {
+void copy_averaged(float source[k_classes], inout float target[k_classes]) {
     float rest = 1.0, others = 0.0;
     uint count = 0;
     card_unroll for (uint c = 0; c < k_classes; ++c) {
@@ -41,7 +39,7 @@ void take_averaged(float source[k_classes], inout float target[k_classes]) {
         if (averaged(c))
             target[c] = source[c];
         else
-            target[c] = (others > k_nothing ? target[c] / others : 1.0 / float(count)) * rest;
+            target[c] = (others > k_no_probability ? target[c] / others : 1.0 / float(count)) * rest;
     }
 }
 
@@ -50,7 +48,7 @@ void combine(uint first, inout float p[k_classes]) {
     float largest = -3.4e38;
     card_unroll for (uint c = 0; c < k_classes; ++c) {
         const float score = clamp(linear[first + c], 0.0, 1.0);
-        p[c] = parameters.scale * (log(max(p[c], k_min_pooled_probability)) + parameters.ratio * score);
+        p[c] = parameters.scale * (log(max(p[c], k_min_combined_probability)) + parameters.ratio * score);
         largest = max(largest, p[c]);
     }
     float total = 0.0;
@@ -68,11 +66,11 @@ void main() {
     float p[k_classes];
     card_unroll for (uint c = 0; c < k_classes; ++c) p[c] = stumps[first + c];
     const bool averages = (parameters.averaged_low | parameters.averaged_high) != 0;
-    if (parameters.pools != 0) {
+    if (parameters.combines != 0) {
         float alone[k_classes];
         card_unroll for (uint c = 0; c < k_classes; ++c) alone[c] = p[c];
         combine(first, p);
-        if (averages) take_averaged(alone, p);
+        if (averages) copy_averaged(alone, p);
     }
     if (averages) {
         float mean[k_classes];
@@ -81,7 +79,7 @@ void main() {
             mean[c] += (p[c] - mean[c]) / parameters.stages;
             means[first + c] = mean[c];
         }
-        take_averaged(mean, p);
+        copy_averaged(mean, p);
     }
     card_unroll for (uint c = 0; c < k_classes; ++c) prediction[first + c] = p[c];
 }

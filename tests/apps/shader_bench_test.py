@@ -24,7 +24,7 @@ class ShaderBench(ProgramTest):
         self.assertNotIn("context_geodesic", some)
 
     def test_kernels_are_compared_and_timed(self):
-        text = self.bench("--filter", "stumps|orientations", "--json", "r.json").stdout
+        text = self.bench("--filter", "stump scoring|orientations", "--json", "r.json").stdout
         report = self.report("r.json")
         self.assertIn("copy_gb_per_s", report["device"])
         self.assertEqual([m["operation"] for m in report["measurements"]], ["stump scoring", "style evaluation"])
@@ -41,20 +41,20 @@ class ShaderBench(ProgramTest):
             self.assertEqual(set(measurement["references_ms"]), {"runtime/copy.comp", "runtime/multiply_add.comp"})
 
     def test_a_slower_kernel_is_noticed(self):
-        self.bench("--filter", "stumps", "--json", "now.json")
+        self.bench("--filter", "stump scoring", "--json", "now.json")
         old = self.report("now.json")
         kernel = old["measurements"][0]["kernels"][0]
         kernel["ms_of_repeats"] = [0.01 * ms for ms in kernel["ms_of_repeats"]]
         (self.folder / "fast.json").write_text(json.dumps(old))
-        result = self.bench("--filter", "stumps", "--baseline", "fast.json", code=1)
+        result = self.bench("--filter", "stump scoring", "--baseline", "fast.json", code=1)
         self.assertIn("SLOWER", result.stdout)
         self.assertIn("1 of 1 kernels are slower", result.stderr)
         kernel["ms_of_repeats"] = [1e4 * ms for ms in kernel["ms_of_repeats"]]
         (self.folder / "slow.json").write_text(json.dumps(old))
-        self.assertIn("faster", self.bench("--filter", "stumps", "--baseline", "slow.json").stdout)
+        self.assertIn("faster", self.bench("--filter", "stump scoring", "--baseline", "slow.json").stdout)
 
     def test_baselines_that_do_not_fit_are_refused(self):
-        self.bench("--filter", "stumps", "--json", "now.json")
+        self.bench("--filter", "stump scoring", "--json", "now.json")
         report = self.report("now.json")
         report["device"]["name"] = "Other"
         (self.folder / "other.json").write_text(json.dumps(report))

@@ -99,7 +99,7 @@ struct GpuCascade::Columns {
     }
 };
 
-// Where the faces and edges of meshes are among those of all. The sums are multiples of k_stump_stride.
+// All meshes share each buffer: the first row of each mesh, and the rows of all, multiples of k_stump_stride.
 struct GpuCascade::Rows {
     std::vector<std::size_t> first_face, first_edge;
     std::size_t faces = 0, edges = 0;

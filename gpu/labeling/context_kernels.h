@@ -42,7 +42,7 @@ struct ContextWork {
 /// Most works at a time: the workgroups along z that every device has.
 constexpr std::size_t k_max_context_works = 65'535;
 
-/// What a work takes: the bytes of its largest buffer, and the most texels that it adds to one.
+/// The size of a work: bytes in the buffer where it has most of them, and texels in the texel buffer where it has most.
 struct ContextDemand {
     std::size_t bytes = 0, texels = 0;
 };

@@ -11,8 +11,8 @@ layout(push_constant) uniform Push { RankParameters parameters; };
 layout(set = 0, binding = 0, std430) readonly buffer Geodesic { vec4 geodesic[]; };  // columns x rows
 layout(set = 0, binding = 1, std430) readonly buffer Axes { vec4 axes[]; };          // the same
 layout(set = 0, binding = 2) uvec4_table(Columns, columns);                         // RankedColumn
-// Of each column, padded to groups of four by the largest float. Texels in both builds: the fifth storage buffer would
-// be more than every device has.
+// The thresholds of each column, padded with the largest float to groups of four. A texel buffer also on cards, as some
+// devices allow only four storage buffers.
 layout(set = 0, binding = 3) uniform samplerBuffer thresholds;
 layout(set = 0, binding = 4, std430) writeonly buffer Ranks { uint ranks[]; };      // columns x rows, a byte each
 

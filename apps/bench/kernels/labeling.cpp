@@ -138,7 +138,8 @@ struct Cascade {
         actual =
             std::move(score_faces(model, std::span(&one, 1), {scorer, histograms, &cascade}).front().probabilities);
     }
-    // Where a histogram lies at a threshold but for rounding, a face gets other probabilities.
+    // Host and device round differently. A histogram that lies within rounding of a threshold may fall on its other
+    // side, and then that face has other probabilities.
     std::vector<Difference> differences() const {
         CpuStumpScorer stumps;
         FastContextHistograms context;

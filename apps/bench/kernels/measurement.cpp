@@ -106,7 +106,7 @@ bool Measurement::fits() const {
 }
 
 Shares shares_of(const KernelRow& row, const Ceilings& ceilings) {
-    // Of a time near that of a launch, what is left is noise.
+    // If a kernel takes hardly longer than a launch, the difference is noise: at least a tenth of its time is kept.
     constexpr double k_least_left = 0.1;
     const double all = row.median_milliseconds(), left = std::max(all - 1e-3 * ceilings.launch_us, k_least_left * all);
     return {row.gb_per_s() / ceilings.copy_gb_per_s * all / left,

@@ -287,8 +287,8 @@ void Device::wait(Ticket ticket) {
     if (ticket == 0) return;
     host_work_.add(HostTask::wait);
     const auto doing = [&] { return fmt::format("finish the work on device '{}'", info_.name); };
-    if (switches_
-            .checks_shaders) {  // in this mode, the validation layer 1.3.239 adds 10 s to each wait for a semaphore
+    // With GPU-assisted validation, the layer (1.3.239) adds ten seconds to each wait for a semaphore.
+    if (switches_.checks_shaders) {
         const std::lock_guard lock(*queue_mutex_);
         check(vkQueueWaitIdle(queue_), doing);
         return;

@@ -31,7 +31,7 @@ class ValidationLog {
     std::vector<std::string> messages_;
 };
 
-/// What the validation layer looks at.
+/// Which checks of the validation layer are on.
 enum class Validation {
     none,     ///< it is not loaded
     calls,    ///< calls, and the order of accesses (synchronization validation)

@@ -29,8 +29,12 @@ bool is_set(const char* variable, std::string_view only) {
 }  // namespace
 
 DeviceSwitches environment_switches() {
-    const bool checks_shaders = value_of("EXEMPLAR_VALIDATION") == "gpu";
-    return {.validates = checks_shaders || is_set("EXEMPLAR_VALIDATION", "1"),
+    const std::string_view validation = value_of("EXEMPLAR_VALIDATION");
+    const bool checks_shaders = validation == "gpu";
+    if (!validation.empty() && !checks_shaders && validation != "1")
+        throw UsageError(fmt::format("EXEMPLAR_VALIDATION={:.40}: its values are '1' and 'gpu'; unset it for the usual",
+                                     validation));
+    return {.validates = !validation.empty(),
             .checks_shaders = checks_shaders,
             .maps_memory = !is_set("EXEMPLAR_MEMORY", "unmapped"),
             .prefers_host = !is_set("EXEMPLAR_HOST", "never"),

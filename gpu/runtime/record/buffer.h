@@ -38,7 +38,7 @@ class Buffer {
         return buffer;
     }
 
-    /// What every buffer may be used for.
+    /// The Vulkan usages that every buffer is created with.
     static constexpr VkBufferUsageFlags k_usage =
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
         VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |

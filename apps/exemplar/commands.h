@@ -15,6 +15,7 @@ void add_train_command(Command& label);
 void add_apply_command(Command& label);
 void add_batch_command(Command& label);
 void add_evaluate_command(Command& label);
+void add_study_command(Command& label);
 void add_stress_command(Command& label);
 void add_next_command(Command& label);
 void add_simulate_command(Command& label);

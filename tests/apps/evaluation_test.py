@@ -1,5 +1,6 @@
 """label evaluate end to end on tiny generated shapes. Needs a Vulkan device (a software one will do)."""
 
+import json
 import os
 import shutil
 import unittest
@@ -300,6 +301,57 @@ class Evaluate(WithModel):
     def test_two_test_meshes_of_one_name_are_refused(self):
         (self.folder / "twice.txt").write_text("cups/cup_001.off\ncups/cup_001.off\n")
         self.refused("label", "evaluate", "--train", "cups", "--test", "twice.txt", "--out", "x", code=2, says="cup_001")
+
+
+class Study(WithModel):
+    STUDY = ["label", "study", "cups", "--size", "2", "--held", "1", "--splits", "2", "--faces", "400", *QUICK]
+
+    def test_every_training_mesh_is_held_out_once(self):
+        printed = self.call(*self.STUDY, "--out", "study.json", "--json", "report.json").stdout
+        report = self.json("study.json")
+        self.assertEqual(report, self.json("report.json"))
+        self.assertIn("cups", printed)
+        for split in range(2):
+            rows = [row for row in report["rows"] if row["split"] == split]
+            self.assertEqual(len({row["mesh"] for row in rows}), 2)
+            self.assertEqual({row["group"] for row in rows}, {0, 1})
+        for row in report["rows"]:
+            for key in ["recognition_rate", "segment_weighted_accuracy", "without_cut"]:
+                self.assertGreater(row[key], 0.3, row)
+                self.assertLessEqual(row[key], 1, row)
+            self.assertGreater(row["log_loss"], 0)
+
+    def test_goes_on_where_it_stopped(self):
+        self.call(*self.STUDY, "--out", "whole.json")
+        whole = self.json("whole.json")
+        (self.folder / "part.json").write_text(json.dumps({**whole, "rows": whole["rows"][:3]}))
+        self.call(*self.STUDY, "--out", "part.json")
+        part = self.json("part.json")
+        self.assertEqual(part["rows"][:3], whole["rows"][:3])
+        for row in [part["rows"][3], whole["rows"][3]]:
+            row.pop("seconds")
+        self.assertEqual(part["rows"][3], whole["rows"][3])
+
+    def test_results_of_other_options_are_not_replaced(self):
+        self.call(*self.STUDY, "--out", "kept.json")
+        before = (self.folder / "kept.json").read_bytes()
+        refused = self.call(*self.STUDY, "--out", "kept.json", "--seed", "2", code=2)
+        self.assertIn("give another --out", refused.stderr)
+        self.assertEqual((self.folder / "kept.json").read_bytes(), before)
+
+    def test_does_not_differ_from_itself(self):
+        self.call(*self.STUDY, "--out", "one.json")
+        printed = self.call(*self.STUDY, "--out", "two.json", "--against", "one.json", "--without", "cups").stdout
+        difference = self.json("two.json")["difference"]["recognition_rate"]
+        self.assertEqual(difference["all"], {"mean": 0, "lowest": 0, "highest": 0})
+        self.assertIsNone(difference["without"]["mean"])
+        self.assertIn("4 labelings", printed)
+
+    def test_too_few_meshes_or_none_left_to_learn_are_refused(self):
+        few = self.call("label", "study", "cups", "--out", "few.json", code=2)
+        self.assertIn("cups: has 3 meshes, but --size 6 needs more", few.stderr)
+        none = self.call("label", "study", "cups", "--size", "2", "--held", "2", "--out", "none.json", code=2)
+        self.assertIn("--held must be below --size", none.stderr)
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
+#include "apps/exemplar/label/category_folders.h"
 #include "apps/exemplar/label/evaluation_run.h"
 #include "host/core/errors.h"
 
@@ -59,38 +60,6 @@ std::size_t protocol_size(const std::string& protocol) {
     return 0;
 }
 
-/// Labels lie beside a mesh, or in the mesh file itself.
-bool may_be_labeled(const fs::path& file) {
-    const std::string extension = file.extension().string();
-    return file.filename().string().ends_with("_labels.txt") || extension == ".ply" || extension == ".glb";
-}
-
-bool holds(const fs::path& folder, bool (*kind)(const fs::path&)) {
-    return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(),
-                       [&](const fs::directory_entry& entry) { return entry.is_regular_file() && kind(entry.path()); });
-}
-
-/// Returns the folder itself if it holds meshes, as its subfolders may be results of a model. Otherwise returns its
-/// subfolders with labeled meshes, or with any meshes if `labels` names another folder of labels.
-std::vector<fs::path> category_folders(const fs::path& folder, const fs::path& labels) {
-    if (folder.empty()) throw UsageError("--protocol needs the folder of a category, or of several");
-    require_input(folder);
-    if (!fs::is_directory(folder)) throw UsageError(fmt::format("{}: is no folder", folder.string()));
-    std::set<fs::path> categories;
-    if (!holds(folder, is_mesh_file))
-        for (const auto& entry : fs::directory_iterator(folder))
-            if (entry.is_directory() && holds(entry.path(), labels.empty() ? may_be_labeled : is_mesh_file))
-                categories.insert(entry.path());
-    if (categories.empty()) categories.insert(folder);
-    return {categories.begin(), categories.end()};
-}
-
-/// An absolute path whose last part is a name.
-fs::path without_trailing_slash(const fs::path& path) {
-    const fs::path absolute = fs::absolute(path).lexically_normal();
-    return absolute.has_filename() ? absolute : absolute.parent_path();
-}
-
 /// Returns the folder of human segmentations: the user's, else the benchmark's seg/ beside labeled/, else empty.
 fs::path human_folder(const EvaluateCommand& options, const fs::path& category) {
     if (!options.humans.empty()) {
@@ -106,6 +75,7 @@ std::vector<EvaluationTask> protocol_tasks(const EvaluateCommand& options) {
     std::vector<EvaluationTask> tasks;
     if (options.protocol == "sb19" && options.splits)
         throw UsageError("--splits does not apply to sb19, which leaves out each mesh in turn");
+    if (options.folder.empty()) throw UsageError("--protocol needs the folder of a category, or of several");
     for (const fs::path& folder : category_folders(options.folder, options.labels)) {
         const fs::path category = without_trailing_slash(folder);
         const std::vector<fs::path> meshes = list_meshes(category);

@@ -54,20 +54,7 @@ std::string digest_of_humans(const fs::path& folder, const std::string& name) {
 
 /// Everything that a model depends on: results of another run are not mixed into this one.
 std::string evaluation_run_key(const EvaluationTask& task, const TrainOptions& train) {
-    Json key{{"seed", train.seed},
-             {"rounds", train.rounds},
-             {"patience", train.patience},
-             {"stages", train.max_stages},
-             {"bins", train.bins},
-             {"rows", train.rows_per_mesh},
-             {"feature_fraction", train.feature_fraction},
-             {"shrinkage", train.shrinkage},
-             {"linear", train.linear},
-             {"samples", train.features.samples},
-             {"orientation", train.features.orientation},
-             {"features", k_feature_version},
-             {"training", k_training_version},
-             {"format", k_model_format_version}};
+    Json key = describe_options(train);
     for (const fs::path& path : task.train) key["train"].push_back({path.stem().string(), digest(path, task.labels)});
     return json_text(key);
 }

@@ -11,6 +11,7 @@ void add_label_command(Command& app) {
         "  exemplar label apply human.safetensors mesh.obj --out labeled\n"
         "  exemplar label batch shapes --model human.safetensors --out labeled\n"
         "  exemplar label evaluate --protocol sb6 shapes --out report\n"
+        "  exemplar label study psb/labeled --out study.json\n"
         "  exemplar label stress human.safetensors mesh.obj\n"
         "  exemplar label split human.off --out parts --caps\n"
         "  exemplar label transfer low.off high.obj --out high_labels.txt\n"
@@ -21,6 +22,7 @@ void add_label_command(Command& app) {
     add_apply_command(*command);
     add_batch_command(*command);
     add_evaluate_command(*command);
+    add_study_command(*command);
     add_stress_command(*command);
     add_next_command(*command);
     add_simulate_command(*command);

@@ -51,6 +51,23 @@ std::vector<std::string> first_features(const LabelingModel& model, std::size_t 
     return names;
 }
 
+nlohmann::json describe_options(const TrainOptions& options) {
+    return {{"seed", options.seed},
+            {"rounds", options.rounds},
+            {"patience", options.patience},
+            {"stages", options.max_stages},
+            {"bins", options.bins},
+            {"rows", options.rows_per_mesh},
+            {"feature_fraction", options.feature_fraction},
+            {"shrinkage", options.shrinkage},
+            {"linear", options.linear},
+            {"samples", options.features.samples},
+            {"orientation", options.features.orientation},
+            {"features", k_feature_version},
+            {"training", k_training_version},
+            {"format", k_model_format_version}};
+}
+
 namespace {
 
 std::string number_or_dash(double value, int digits) {

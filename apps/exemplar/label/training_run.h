@@ -27,6 +27,10 @@ std::vector<std::pair<std::string, std::size_t>> stumps_per_family(const Labelin
 /// Names of the features of the first `count` stumps of the first classifier.
 std::vector<std::string> first_features(const LabelingModel& model, std::size_t count);
 
+/// Everything but the meshes that a model depends on, for results that are kept: those of other options, or of another
+/// version of the training, are not mixed.
+nlohmann::json describe_options(const TrainOptions& options);
+
 /// A table of the classifiers and the CRF's parameters.
 void print_training(const LabelingModel& model, const TrainReport& report);
 /// The same for --json; keys are documented in docs/formats.md.

@@ -19,17 +19,16 @@ void require_finite(const TensorFile& file, const std::string& name, const std::
         if (!std::isfinite(value)) inconsistent(file, name + " holds a value that is not finite");
 }
 
-void require_version(const TensorFile& file, const std::string& key, int oldest, int newest, const std::string& mend) {
+void require_version(const TensorFile& file, const std::string& key, int known, const std::string& mend) {
     int version = 0;
     try {
         version = std::stoi(file.meta(key));
     } catch (const std::logic_error&) {
         inconsistent(file, key + " is no number");
     }
-    if (version < oldest || version > newest)
-        throw ModelError(fmt::format("{}: {} is {}, this program knows {}; {}", file.path, key, version,
-                                     oldest < newest ? fmt::format("{} to {}", oldest, newest) : std::to_string(newest),
-                                     version > newest ? "use a newer Exemplar" : mend));
+    if (version != known)
+        throw ModelError(fmt::format("{}: {} is {}, this program knows {}; {}", file.path, key, version, known,
+                                     version > known ? "use a newer Exemplar" : mend));
 }
 
 void add_classifier(TensorFile& file, const std::string& name, const CalibratedStumps& classifier) {

@@ -13,13 +13,9 @@ namespace exemplar {
 [[noreturn]] void inconsistent(const TensorFile& file, const std::string& what);
 /// Throws ModelError if one of the values is not finite.
 void require_finite(const TensorFile& file, const std::string& name, const std::vector<float>& values);
-/// Throws ModelError unless the metadata `key` is a version from `oldest` to `newest`, which this program knows;
-/// `mend` says what to do with an older file.
-void require_version(const TensorFile& file, const std::string& key, int oldest, int newest, const std::string& mend);
-/// Throws likewise unless it is the one known version.
-inline void require_version(const TensorFile& file, const std::string& key, int known, const std::string& mend) {
-    require_version(file, key, known, known, mend);
-}
+/// Throws ModelError unless the metadata `key` is the version that this program knows; `mend` says what to do with an
+/// older file.
+void require_version(const TensorFile& file, const std::string& key, int known, const std::string& mend);
 
 /// Adds a classifier as arrays called NAME.feature, NAME.threshold_above_below, ... (docs/formats.md).
 void add_classifier(TensorFile& file, const std::string& name, const CalibratedStumps& classifier);

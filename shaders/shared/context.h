@@ -16,7 +16,7 @@ const uint k_prefix_runs = 64;
 
 // The values of LinearClassifier::k_max_deviations, and of k_min_combined_probability and k_no_probability of
 // host/labeling/inference.
-const float k_max_deviations = 5.0f;
+const float k_max_deviations = 2.0f;
 const float k_min_combined_probability = 1e-6f;
 const float k_no_probability = 1e-30f;
 

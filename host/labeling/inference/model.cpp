@@ -159,7 +159,7 @@ LabelingModel load_model(const std::filesystem::path& path) {
     const TensorFile file = read_safetensors(path);
     if (const auto kind = file.metadata.find("kind"); kind == file.metadata.end() || kind->second != k_kind)
         throw ModelError(fmt::format("{}: is no mesh labeling model; make one with 'exemplar label train'", file.path));
-    require_version(file, "format_version", 1, k_model_format_version, "train it again");
+    require_version(file, "format_version", k_model_format_version, "train it again");
     require_version(file, "feature_version", k_feature_version, "its features have changed: train it again");
     LabelingModel model;
     try {

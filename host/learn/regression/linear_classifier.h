@@ -12,7 +12,7 @@ namespace exemplar {
 /// A linear classifier of standardized features: L(x, c) = constant_c + sum over f of weight_fc z_f, where z_f is
 /// (x_f - mean_f) * inverse_f, clamped to [-k_max_deviations, k_max_deviations]. A NaN feature counts as its mean.
 struct LinearClassifier {
-    static constexpr float k_max_deviations = 5;  ///< bound of |z_f|, so that outliers do not decide
+    static constexpr float k_max_deviations = 2;  ///< bound of |z_f|, so that outliers do not decide
 
     std::uint32_t class_count = 0;  ///< 0: there is no classifier
     std::vector<float> mean;        ///< per feature

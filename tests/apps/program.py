@@ -30,10 +30,10 @@ class ProgramTest(unittest.TestCase):
                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
     @classmethod
-    def call(cls, *arguments, code=0, program=PROGRAM):
+    def call(cls, *arguments, code=0, program=PROGRAM, timeout=240):
         """Runs the program to its end; an exit code other than `code` is a failure that shows what was said."""
         process = cls.start(*arguments, program=program)
-        output, errors = process.communicate(timeout=240)
+        output, errors = process.communicate(timeout=timeout)
         result = subprocess.CompletedProcess(arguments, process.returncode, output, errors)
         if process.returncode != code:
             raise AssertionError(f"{program.name} {' '.join(map(str, arguments))} gave exit code {process.returncode} "

@@ -92,7 +92,7 @@ class ShaderStatistics(ProgramTest):
         if radv() is None:
             raise unittest.SkipTest("Mesa's driver of AMD's cards is not installed (Debian: mesa-vulkan-drivers)")
         super().setUpClass()
-        cls.printed = cls.call("bench", "shaders", "--statistics", "--json", "now.json", "--quiet").stdout
+        cls.printed = cls.call("bench", "shaders", "--statistics", "--json", "now.json", "--quiet", timeout=900).stdout
         cls.report = json.loads((cls.folder / "now.json").read_text())
 
     def statistics(self, *options, code=0):

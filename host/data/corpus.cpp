@@ -182,6 +182,20 @@ void label_cornerless(const std::vector<Votes>& votes, std::vector<std::int32_t>
 
 }  // namespace
 
+LabeledCorpus with_label_order(LabeledCorpus corpus, std::vector<std::string> names) {
+    std::vector<std::int32_t> position;
+    for (const std::string& name : corpus.names) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        position.push_back(static_cast<std::int32_t>(found - names.begin()));
+        if (found == names.end()) names.push_back(name);
+    }
+    for (LabeledMesh& mesh : corpus.meshes)
+        for (std::int32_t& label : mesh.label)
+            if (label >= 0) label = position[static_cast<std::size_t>(label)];
+    corpus.names = std::move(names);
+    return corpus;
+}
+
 std::vector<std::int32_t> to_source_faces(const TriangleMesh& mesh, std::span<const std::int32_t> triangle_label) {
     if (mesh.source_face.empty()) return {triangle_label.begin(), triangle_label.end()};
     const std::vector<float> area = face_areas(mesh);

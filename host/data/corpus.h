@@ -53,6 +53,9 @@ FaceLabels labels_of_mesh(const std::filesystem::path& path, const MeshFile& fil
 LabeledCorpus load_corpus(const std::vector<std::filesystem::path>& paths, const std::vector<std::string>& names = {},
                           const std::filesystem::path& labels_folder = {});
 
+/// Returns the corpus with these label names, in this order, and after them those of its own that are not among them.
+LabeledCorpus with_label_order(LabeledCorpus corpus, std::vector<std::string> names);
+
 /// Returns labels of the source faces from labels of their triangles. Each polygon gets the label with the most
 /// area; one without triangles gets that of its neighbor in the file.
 std::vector<std::int32_t> to_source_faces(const TriangleMesh& mesh, std::span<const std::int32_t> triangle_label);

@@ -339,6 +339,20 @@ class Study(WithModel):
         self.assertIn("give another --out", refused.stderr)
         self.assertEqual((self.folder / "kept.json").read_bytes(), before)
 
+    def test_results_of_other_labels_are_not_continued(self):
+        shutil.copytree(self.folder / "cups", self.folder / "changing")
+        study = [argument.replace("cups", "changing") for argument in self.STUDY]
+        self.call(*study, "--out", "changing.json")
+        labels = self.folder / "changing" / "cup_001_labels.txt"
+        labels.write_text(labels.read_text().replace("handle", "grip"))
+        self.assertIn("give another --out", self.call(*study, "--out", "changing.json", code=2).stderr)
+
+    def test_compares_with_studies_alone(self):
+        (self.folder / "list.json").write_text("[1, 2]")
+        refused = self.call(*self.STUDY, "--out", "never.json", "--against", "list.json", code=1)
+        self.assertIn("list.json: is no study", refused.stderr)
+        self.assertFalse((self.folder / "never.json").exists())
+
     def test_does_not_differ_from_itself(self):
         self.call(*self.STUDY, "--out", "one.json")
         printed = self.call(*self.STUDY, "--out", "two.json", "--against", "one.json", "--without", "cups").stdout

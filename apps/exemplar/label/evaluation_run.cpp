@@ -39,12 +39,6 @@ std::string digest(const std::string& content) {
     return fmt::format("{:016x}", XXH3_64bits(content.data(), content.size()));
 }
 
-/// The content of a mesh file and of its label file, as 16 hexadecimal digits.
-std::string digest(const fs::path& mesh, const fs::path& labels_folder) {
-    const fs::path labels = labels_path(mesh, labels_folder);
-    return digest(read_file(mesh) + (fs::exists(labels) ? read_file(labels) : std::string()));
-}
-
 /// The content of a mesh's human segmentations.
 std::string digest_of_humans(const fs::path& folder, const std::string& name) {
     std::string content;
@@ -55,7 +49,8 @@ std::string digest_of_humans(const fs::path& folder, const std::string& name) {
 /// Everything that a model depends on: results of another run are not mixed into this one.
 std::string evaluation_run_key(const EvaluationTask& task, const TrainOptions& train) {
     Json key = describe_options(train);
-    for (const fs::path& path : task.train) key["train"].push_back({path.stem().string(), digest(path, task.labels)});
+    for (const fs::path& path : task.train)
+        key["train"].push_back({path.stem().string(), digest_of_labeled(path, task.labels)});
     return json_text(key);
 }
 
@@ -148,6 +143,11 @@ void summarize_category(Json& category) {
 
 }  // namespace
 
+std::string digest_of_labeled(const fs::path& mesh, const fs::path& labels_folder) {
+    const fs::path labels = labels_path(mesh, labels_folder);
+    return digest(read_file(mesh) + (fs::exists(labels) ? read_file(labels) : std::string()));
+}
+
 /// The JSON of an earlier run if it was about the same; else null.
 Json EvaluationRun::finished(const fs::path& path, const std::string& key) const {
     if (behavior_.fresh) return nullptr;
@@ -192,29 +192,19 @@ LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::pat
 LabeledCorpus EvaluationRun::load_test_mesh(const EvaluationTask& task, const fs::path& mesh,
                                             const LabelingModel& model) const {
     LabeledCorpus own = load_corpus({mesh}, {}, task.labels);
-    std::vector<std::string> names = model.label_names;
-    std::vector<std::int32_t> position;
     for (const std::string& name : own.names) {
-        const auto found = std::find(names.begin(), names.end(), name);
-        position.push_back(static_cast<std::int32_t>(found - names.begin()));
-        if (found != names.end()) continue;
-        if (!task.other_category)
-            own.warnings.push_back(
-                fmt::format("{}: no training mesh has the label '{}'{}: its faces will count as wrong", mesh.string(),
-                            name, suggestion(name, model.label_names)));
-        names.push_back(name);
+        if (task.other_category || std::ranges::find(model.label_names, name) != model.label_names.end()) continue;
+        own.warnings.push_back(fmt::format("{}: no training mesh has the label '{}'{}: its faces will count as wrong",
+                                           mesh.string(), name, suggestion(name, model.label_names)));
     }
-    for (std::int32_t& label : own.meshes.front().label)
-        if (label >= 0) label = position[static_cast<std::size_t>(label)];
-    own.names = std::move(names);
-    return own;
+    return with_label_order(std::move(own), model.label_names);
 }
 
 Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, const fs::path& folder,
                               const LabelingModel& model, const std::string& key) {
     const fs::path stem = folder / mesh.stem(), scores = stem.string() + ".json";
     const std::string mesh_key =
-        fmt::format("{} {} {} scores {} {}", key, digest(mesh, task.labels),
+        fmt::format("{} {} {} scores {} {}", key, digest_of_labeled(mesh, task.labels),
                     digest_of_humans(task.humans, mesh.stem().string()), k_score_version, task.other_category);
     if (Json done = finished(scores, mesh_key); !done.is_null()) {
         done["path"] = mesh.string();  // the same mesh may have moved

@@ -14,6 +14,10 @@
 
 namespace exemplar {
 
+/// Returns a hash of the content of a mesh file and of its label file, as 16 hexadecimal digits. Results that are kept
+/// are not mixed with those of other meshes.
+std::string digest_of_labeled(const std::filesystem::path& mesh, const std::filesystem::path& labels_folder = {});
+
 /// One training and the tests of its model.
 struct EvaluationTask {
     std::string category, split;  ///< name the output folder OUT/CATEGORY/SPLIT

@@ -13,6 +13,7 @@
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/label/category_folders.h"
+#include "apps/exemplar/label/evaluation_run.h"
 #include "apps/exemplar/label/evaluation_summary.h"
 #include "apps/exemplar/label/training_run.h"
 #include "host/core/errors.h"
@@ -118,20 +119,13 @@ std::vector<std::int32_t> most_probable_labels(std::span<const float> probabilit
 /// Labels one held-out mesh and returns its rates.
 Json judge_held_out(const LabelingModel& model, const LabeledMesh& mesh, const std::vector<std::string>& names,
                     MeshFeatures& features, DeviceBackend& backend) {
-    std::vector<std::string> all = model.label_names;  // labels that only this mesh has follow, and count as wrong
-    std::vector<std::int32_t> position;
-    for (const std::string& name : names) {
-        const auto found = std::ranges::find(all, name);
-        position.push_back(static_cast<std::int32_t>(found - all.begin()));
-        if (found == all.end()) all.push_back(name);
-    }
-    std::vector<std::int32_t> truth = mesh.label;
-    for (std::int32_t& label : truth)
-        if (label >= 0) label = position[static_cast<std::size_t>(label)];
+    const LabeledCorpus own = with_label_order({names, {mesh}, {}}, model.label_names);
+    const std::vector<std::int32_t>& truth = own.meshes.front().label;
+    const std::size_t labels = own.names.size();  // those that only this mesh has come last, and count as wrong
     const FaceLabeling labeling = label_faces(model, features, backend.labeling());
-    const MeshScore score = score_labeling(features.face_area, truth, labeling.label, all.size());
-    const MeshScore uncut = score_labeling(
-        features.face_area, truth, most_probable_labels(labeling.probabilities, model.class_count()), all.size());
+    const MeshScore score = score_labeling(features.face_area, truth, labeling.label, labels);
+    const MeshScore uncut = score_labeling(features.face_area, truth,
+                                           most_probable_labels(labeling.probabilities, model.class_count()), labels);
     return {{"mesh", mesh.name},
             {"recognition_rate", rate_json(score.recognition_rate)},
             {"segment_weighted_accuracy", rate_json(score.segment_weighted_accuracy)},
@@ -164,13 +158,43 @@ Json run_study_task(const StudyTask& task, const TrainOptions& options, StudyCat
     return rows;
 }
 
-/// The rows of an interrupted study. Refuses to replace one that was made with other options.
+/// The report of a study; null if the file holds something else.
+Json read_study(const fs::path& path) {
+    Json report = parse_json(read_file(path), nullptr, false);
+    const bool is_study = report.is_object() && report.contains("options") && report.contains("rows");
+    return is_study ? report : Json(nullptr);
+}
+
+/// The rows of an interrupted study. Refuses to replace one of other options or meshes, or another file.
 Json rows_of_earlier(const fs::path& path, const Json& options) {
     if (!fs::exists(path)) return Json::array();
-    const Json report = parse_json(read_file(path), nullptr, false);
-    if (report.is_object() && report.contains("options") && report["options"] == options) return report["rows"];
+    Json report = read_study(path);
+    if (report.is_object() && report["options"] == options) return std::move(report["rows"]);
     throw UsageError(
-        fmt::format("{}: holds something else than a study with these options; give another --out", path.string()));
+        fmt::format("{}: is no study of these meshes with these options; give another --out", path.string()));
+}
+
+/// The rows to compare with; null if there is nothing to compare with.
+Json rows_to_compare(const fs::path& path) {
+    if (path.empty()) return nullptr;
+    require_input(path);
+    Json report = read_study(path);
+    if (report.is_null())
+        throw DataError(
+            fmt::format("{}: is no study; give a file that 'exemplar label study --out' wrote", path.string()));
+    return std::move(report["rows"]);
+}
+
+/// Everything that the results depend on: the options, and the content of each mesh file with its labels.
+Json describe_study(const StudyCommand& options, const std::vector<fs::path>& folders) {
+    Json described = describe_options(options.train);
+    described.update(
+        {{"size", options.size}, {"splits", options.splits}, {"held", options.held}, {"faces", options.faces}});
+    for (const fs::path& folder : folders)
+        for (const fs::path& mesh : list_meshes(folder))
+            described["meshes"].push_back(fmt::format("{}/{} {}", without_trailing_slash(folder).filename().string(),
+                                                      mesh.stem().string(), digest_of_labeled(mesh)));
+    return described;
 }
 
 /// A held-out mesh of a split.
@@ -195,7 +219,7 @@ std::vector<PairedDifference> rates_of(const Json& rows, const char* key, const 
         if (without.contains(category) || std::isnan(rate)) continue;
         if (!other) {
             rates.push_back({category, row["mesh"], rate});
-        } else if (const auto found = other->find(row_name(row)); found != other->end()) {
+        } else if (const auto found = other->find(row_name(row)); found != other->end() && !std::isnan(found->second)) {
             rates.push_back({category, row["mesh"], rate - found->second});
         }
     }
@@ -211,7 +235,7 @@ void print_study(const Json& rows, const std::set<std::string>& without) {
     const auto line = [&](const std::string& name, const std::set<std::string>& left_out) {
         fmt::print("{:>20}", name);
         for (const StudyRate& rate : k_study_rates)
-            fmt::print(" {:>9.3f}", rate.factor * estimate_difference(rates_of(rows, rate.key, left_out)).mean);
+            fmt::print(" {:>9.3f}", rate.factor * mean_over_categories(rates_of(rows, rate.key, left_out)));
         fmt::print("\n");
     };
     for (const std::string& category : categories) {
@@ -272,18 +296,14 @@ void study_category(const StudyCommand& options, const fs::path& folder, const f
 void run_label_study(const StudyCommand& options) {
     const auto limits = apply_common_options(options.common);
     require_output_file(options.out);
-    if (!options.against.empty()) require_input(options.against);
     if (options.held >= options.size)
         throw UsageError("--held must be below --size: some meshes must be left to learn");
     const fs::path cache = usable_cache(options.cache, options.common.quiet);
     DeviceBackend backend(options.common.device);
-    Json described = describe_options(options.train);
-    described.update(
-        {{"size", options.size}, {"splits", options.splits}, {"held", options.held}, {"faces", options.faces}});
-    Json report{{"options", described}, {"rows", rows_of_earlier(options.out, described)}};
-    const Json other = options.against.empty() ? Json() : parse_json(read_file(options.against)).at("rows");
-
     const std::vector<fs::path> folders = category_folders(options.folder);
+    const Json described = describe_study(options, folders), other = rows_to_compare(options.against);
+    Json report{{"options", described}, {"rows", rows_of_earlier(options.out, described)}};
+
     const std::size_t groups = (options.size + options.held - 1) / options.held;
     Progress progress("studying", folders.size() * options.splits * groups);
     for (const fs::path& folder : folders) study_category(options, folder, cache, backend, progress, report);

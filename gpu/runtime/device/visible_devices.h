@@ -12,8 +12,8 @@ namespace exemplar {
 /// Makes graphics cards unusable that the environment assigns to others, with the reason: CUDA_VISIBLE_DEVICES (of
 /// NVIDIA) and ROCR_VISIBLE_DEVICES (of AMD) list the cards of their vendor to use, by number or as GPU-UUID, and where
 /// neither is set, SLURM_STEP_GPUS or SLURM_JOB_GPUS list numbers of cards. Cards are numbered by their PCI addresses.
-/// As in CUDA, an entry that names no card ends the list. An entry may name a part of a card (MIG-UUID). Vulkan does
-/// not tell which card that is, so a list with such an entry hides nothing. `environment` returns the value of a
+/// An entry that names no card ends the list, as in CUDA. A list with an entry for a part of a card (MIG-UUID) hides
+/// nothing, because Vulkan does not tell which card that part belongs to. `environment` returns the value of a
 /// variable or null.
 void hide_devices_of_others(std::span<DeviceInfo> devices,
                             const std::function<const char*(const char* variable)>& environment);

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t k_resamples = 2000;
 constexpr double k_tail = 0.025;  ///< on either side of the interval
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Sum {
     double total = 0, count = 0;
@@ -35,7 +36,7 @@ Categories group(std::span<const PairedDifference> differences) {
     return categories;
 }
 
-/// Mean over the categories, each of the meshes that `chosen(category size)` draws one by one.
+/// Returns the mean over the categories, with the mesh `drawn(i, meshes)` in place of the i-th of a category.
 template <typename Draw>
 double mean_of(const Categories& categories, const Draw& drawn) {
     double mean = 0;
@@ -52,11 +53,13 @@ double mean_of(const Categories& categories, const Draw& drawn) {
 
 }  // namespace
 
+double mean_over_categories(std::span<const PairedDifference> values) {
+    if (values.empty()) return k_nan;
+    return mean_of(group(values), [](std::size_t i, std::size_t) { return i; });
+}
+
 DifferenceEstimate estimate_difference(std::span<const PairedDifference> differences, std::uint64_t seed) {
-    if (differences.empty()) {
-        constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-        return {k_nan, k_nan, k_nan};
-    }
+    if (differences.empty()) return {k_nan, k_nan, k_nan};
     const Categories categories = group(differences);
     Random random(seed);
     std::vector<double> means(k_resamples);
@@ -64,8 +67,7 @@ DifferenceEstimate estimate_difference(std::span<const PairedDifference> differe
         mean = mean_of(categories, [&](std::size_t, std::size_t count) { return random.index(count); });
     std::ranges::sort(means);
     const auto tail = static_cast<std::size_t>(k_tail * static_cast<double>(k_resamples));
-    return {mean_of(categories, [](std::size_t i, std::size_t) { return i; }), means[tail],
-            means[k_resamples - 1 - tail]};
+    return {mean_over_categories(differences), means[tail], means[k_resamples - 1 - tail]};
 }
 
 }  // namespace exemplar

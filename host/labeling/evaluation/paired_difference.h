@@ -18,6 +18,9 @@ struct DifferenceEstimate {
     double lowest = 0, highest = 0;  ///< 95 % interval
 };
 
+/// Returns the mean over the categories of the means over their values; NaN without values.
+double mean_over_categories(std::span<const PairedDifference> values);
+
 /// Estimates the difference of two methods from the same meshes. The interval is that of a bootstrap (Efron 1979,
 /// percentiles of 2,000 resamples): within each category, meshes are drawn with replacement, each with all its
 /// differences. Equal seeds give equal intervals. Returns NaN without differences.

@@ -13,6 +13,7 @@ namespace {
 TEST(PairedDifference, CategoriesCountTheSame) {
     const std::vector<PairedDifference> differences{{"a", "1", 1}, {"a", "2", 3}, {"a", "3", 2}, {"b", "1", -2}};
     EXPECT_DOUBLE_EQ(estimate_difference(differences).mean, 0);
+    EXPECT_DOUBLE_EQ(mean_over_categories(differences), 0);
 }
 
 TEST(PairedDifference, WithoutDifferencesNothingIsKnown) {

@@ -126,12 +126,6 @@ class BatchOfCategories(ProgramTest):
         refused("two", ["two/more.safetensors", "second model that recognizes categories"], "--out",
                 "two/more.safetensors", "--samples", "60")
         refused("samples", "--samples", "--out", "samples/kinds.safetensors", "--samples", "61")
-        refused("turned", "--orientation", "--out", "turned/kinds.safetensors", "--samples", "60", "--orientation")
-
-    def test_models_with_coordinates_find_a_recognizer_with_coordinates(self):
-        self.train("oriented", "--orientation")
-        self.assertIn("3 shapes labeled, 0 of unknown category, 0 failed",
-                      self.batch("shapes/cup", "out-oriented", models="oriented").stdout)
 
     def test_a_recognizer_with_another_least_confidence(self):
         shutil.copytree(self.folder / "models", self.folder / "sure")

@@ -67,14 +67,11 @@ class Categories(ProgramTest):
         self.refused("category", "apply", "kinds.safetensors", "other", "--least-confidence", "2", code=2,
                      says="--least-confidence")
 
-    def test_a_model_has_its_own_features_and_least_confidence(self):
-        self.assertEqual((self.description("kinds.safetensors")["orientation"],
-                          self.description("kinds.safetensors")["least_confidence"]), (False, 0.5))
-        self.call("category", "train", "shapes", "--out", "own.safetensors", "--orientation", "--least-confidence", "1",
-                  "--json", "own.json", *FEW)
-        own = self.description("own.safetensors")
-        self.assertEqual((own["orientation"], own["least_confidence"]), (True, 1))
-        self.assertIn("orientation.x", own["features"])
+    def test_a_model_has_its_own_least_confidence(self):
+        self.assertEqual(self.description("kinds.safetensors")["least_confidence"], 0.5)
+        self.call("category", "train", "shapes", "--out", "own.safetensors", "--least-confidence", "1", "--json",
+                  "own.json", *FEW)
+        self.assertEqual(self.description("own.safetensors")["least_confidence"], 1)
         self.assertEqual(self.json("own.json")["least_confidence"], 1)
         self.assertEqual(self.json("own.json")["held_out"]["called_unknown"], 1)
         self.call("category", "apply", "own.safetensors", "new", "--json", "strict.json", "--quiet")
@@ -82,8 +79,8 @@ class Categories(ProgramTest):
         self.call("category", "apply", "own.safetensors", "new", "--least-confidence", "0.5", "--json", "usual.json",
                   "--quiet")
         self.assertEqual([mesh["category"] for mesh in self.json("usual.json")["meshes"]], ["cup", "human", "octopus"])
-        self.call("category", "evaluate", "shapes", "--train-count", "3", "--orientation", "--least-confidence", "1",
-                  "--json", "strict.json", *FEW)
+        self.call("category", "evaluate", "shapes", "--train-count", "3", "--least-confidence", "1", "--json",
+                  "strict.json", *FEW)
         strict = self.json("strict.json")
         self.assertEqual((strict["called_unknown"], strict["least_confidence"]), (1, 1))
         for bad in ["-0.1", "2", "nan", "much"]:

@@ -120,7 +120,6 @@ void add_category_options(Command& command, CategoryTrainingOptions& training, F
     command.add_option("--samples", features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()
         ->check(whole_number(1, k_max_samples));
-    command.add_flag("--orientation", features.orientation, "add coordinates, for shapes that share an orientation");
     command
         .add_option("--least-confidence", training.min_confidence,
                     "a shape of less is called unknown, from 0 (never) to 1")

@@ -76,7 +76,7 @@ void add_category_train_command(Command& category) {
     Command* command = category.add_subcommand("train", "Learns categories from meshes of each");
     command->footer(
         "Needs meshes of two categories at least, and of one of them two; six of each are a good start.\n"
-        "To choose among models for 'label batch --models', give --samples and --orientation as to 'label "
+        "To choose among models for 'label batch --models', give --samples as to 'label "
         "train'.\n\nExamples:\n"
         "  exemplar category train psb/labeled --out categories.safetensors\n"
         "  exemplar category train shapes/cup human=people.txt --out categories.safetensors --seed 1");

@@ -40,6 +40,9 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
     const double read_seconds = watch.wall();
     const FaceLabeling labeling =
         of_file(path, [&] { return label_mesh(model, file.mesh, cache, backend.labeling()); });
+    if (labeling.turned != 0 && !options.common.quiet)
+        fmt::print(stderr, "remark: {}: labeled as if turned by {:.0f} degrees, to lie like the training meshes\n",
+                   path.string(), labeling.turned);
     const LabeledOutput output = make_labeled_output(file.mesh, model, labeling);
     const std::filesystem::path stem = options.out / path.stem();
     write_labeled_files(stem, file, output, options.gltf);

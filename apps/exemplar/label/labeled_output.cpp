@@ -59,7 +59,10 @@ nlohmann::json describe_output(const TriangleMesh& mesh, const LabelingModel& mo
                           {"triangles", faces[c]},
                           {"confidence", share[c] > 0 ? confidence[c] / share[c] : 0.0}});
     }
-    return {{"triangles", mesh.face_count()}, {"confidence", mean_confidence}, {"labels", labels}};
+    return {{"triangles", mesh.face_count()},
+            {"confidence", mean_confidence},
+            {"turned", labeling.turned},
+            {"labels", labels}};
 }
 
 }  // namespace exemplar

@@ -25,6 +25,7 @@
 #include "host/core/stopwatch.h"
 #include "host/labeling/evaluation/evaluation.h"
 #include "host/labeling/evaluation/paired_difference.h"
+#include "host/labeling/features/feature_cache.h"
 #include "host/labeling/inference/mesh_labeling.h"
 #include "host/labeling/painting/suggestions.h"
 
@@ -80,17 +81,29 @@ std::vector<StudyTask> study_tasks(const StudyCommand& options, const std::strin
     return tasks;
 }
 
-/// The meshes of one category with their features.
+/// The meshes of one category with the features of those that the tasks use.
 struct StudyCategory {
     LabeledCorpus corpus;
     std::vector<MeshFeatures> features;
 };
 
-StudyCategory load_category(const StudyCommand& options, const fs::path& cache, const std::vector<fs::path>& meshes) {
+StudyCategory load_category(const StudyCommand& options, const fs::path& cache, const std::vector<fs::path>& meshes,
+                            std::span<const StudyTask> tasks) {
     StudyCategory category{working_corpus(load_corpus(meshes), options.faces), {}};
     if (!options.common.quiet)
         for (const std::string& warning : category.corpus.warnings) fmt::print(stderr, "warning: {}\n", warning);
-    category.features = features_of(category.corpus, options.train.features, cache);
+    std::set<std::size_t> used;
+    for (const StudyTask& task : tasks) {
+        used.insert(task.train.begin(), task.train.end());
+        used.insert(task.held_out.begin(), task.held_out.end());
+    }
+    category.features.resize(meshes.size());
+    Progress progress("computing features", used.size());
+    for (const std::size_t mesh : used) {
+        check_interrupt();
+        category.features[mesh] = cached_features(category.corpus.meshes[mesh].mesh, options.train.features, cache);
+        progress.advance(1, category.corpus.meshes[mesh].name);
+    }
     return category;
 }
 
@@ -129,6 +142,7 @@ Json judge_held_out(const LabelingModel& model, const LabeledMesh& mesh, const s
     return {{"mesh", mesh.name},
             {"recognition_rate", rate_json(score.recognition_rate)},
             {"segment_weighted_accuracy", rate_json(score.segment_weighted_accuracy)},
+            {"turned", labeling.turned},
             {"without_cut", rate_json(uncut.recognition_rate)},
             {"log_loss", rate_json(log_loss(features, truth, labeling.probabilities, model.class_count()))}};
 }
@@ -283,7 +297,7 @@ void study_category(const StudyCommand& options, const fs::path& folder, const f
     std::erase_if(tasks, [&](const StudyTask& task) { return is_done(report["rows"], task); });
     progress.advance(all - tasks.size(), name);
     if (tasks.empty()) return;
-    StudyCategory category = load_category(options, cache, meshes);
+    StudyCategory category = load_category(options, cache, meshes, tasks);
     for (const StudyTask& task : tasks) {
         check_interrupt();
         for (Json& row : run_study_task(task, options.train, category, backend))

@@ -97,8 +97,13 @@ void add_training_options(Command& command, TrainOptions& options, std::filesyst
         .add_option("--samples", options.features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()
         ->check(whole_number(1, k_max_samples));
-    command.add_flag("--orientation", options.features.orientation,
-                     "add coordinates, for shapes that share an orientation");
+    command
+        .add_word_option(
+            "--orientation", [&options](const std::string& use) { options.orientation = orientation_use(use); },
+            "know faces also by where they are: yes, no, or auto, where held-out meshes tell that all lie alike")
+        ->default_str("auto")
+        ->check(one_of(orientation_uses()))
+        ->type_name("");
     command.add_option("--cache", cache, "folder that remembers features; '' remembers none")
         ->capture_default_str()
         ->type_name("FOLDER");

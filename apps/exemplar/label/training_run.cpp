@@ -62,7 +62,7 @@ nlohmann::json describe_options(const TrainOptions& options) {
             {"shrinkage", options.shrinkage},
             {"linear", options.linear},
             {"samples", options.features.samples},
-            {"orientation", options.features.orientation},
+            {"orientation", orientation_uses()[static_cast<std::size_t>(options.orientation)]},
             {"features", k_feature_version},
             {"training", k_training_version},
             {"format", k_model_format_version}};
@@ -82,8 +82,7 @@ void print_training(const LabelingModel& model, const TrainReport& report) {
     for (const StageReport& stage : report.stages)
         fmt::print("{:>14} {:>7} {:>9} {:>9} {:>9} {:>8.1f}{}\n", stage.what, stage.rounds,
                    number_or_dash(stage.stumps_loss, 4), number_or_dash(stage.validation_loss, 4),
-                   number_or_dash(100 * stage.validation_error, 2), stage.seconds,
-                   stage.kept ? "" : "  (no gain, left out)");
+                   number_or_dash(100 * stage.validation_error, 2), stage.seconds, stage.kept ? "" : "  (left out)");
     fmt::print(
         "CRF: kappa {:.3g}, lambda {:.3g}, mu {:.3g}; segment-weighted error {:.2f} % without, {:.2f} % with the cut "
         "({} settings in {:.1f} s)\n",

@@ -47,18 +47,17 @@ void add_recognizer(BatchModels& models, const fs::path& path) {
 }
 
 bool same_features(const FeatureOptions& a, const FeatureOptions& b) {
-    return a.samples == b.samples && a.orientation == b.orientation;
+    return a.samples == b.samples;
 }
 
 void require_same_features(const BatchModels& models) {
     for (const BatchModel& model : models.models)
         if (!same_features(model.model.feature_options, models.features))
-            throw ModelError(
-                fmt::format("{}: wants other features (--samples, --orientation) than {}; train both alike", model.name,
-                            models.models.front().name));
+            throw ModelError(fmt::format("{}: wants other features (--samples) than {}; train both alike", model.name,
+                                         models.models.front().name));
     if (models.recognizer && !same_features(models.recognizer->feature_options, models.features))
         throw ModelError(
-            fmt::format("the model that recognizes categories wants other features (--samples, --orientation) than {}; "
+            fmt::format("the model that recognizes categories wants other features (--samples) than {}; "
                         "train both alike",
                         models.models.front().name));
 }

@@ -22,7 +22,6 @@ using Json = nlohmann::json;
 Json describe_category(const CategoryModel& model) {
     return {{"categories", model.category_names},
             {"samples", model.feature_options.samples},
-            {"orientation", model.feature_options.orientation},
             {"features", model.features},
             {"sharpness", model.sharpness},
             {"evidence_slope", model.confidence.slope},
@@ -42,7 +41,6 @@ void read_category_description(const TensorFile& file, CategoryModel& model) {
     const Json json = parse_json(file.meta("model"));
     model.category_names = json.at("categories").get<std::vector<std::string>>();
     model.feature_options.samples = whole_value(file, json.at("samples"));
-    model.feature_options.orientation = json.at("orientation").get<bool>();
     model.features = json.at("features").get<std::vector<std::string>>();
     model.sharpness = json.at("sharpness").get<double>();
     model.confidence.slope = json.at("evidence_slope").get<double>();

@@ -40,6 +40,7 @@ TensorFile features_to_file(const MeshFeatures& features) {
     file.add("edge_context.begin", {features.edge_context.begin.size()}, features.edge_context.begin);
     file.add("edge_context.edge", {features.edge_context.edge.size()}, features.edge_context.edge);
     file.add("edge_context.bin", {features.edge_context.bin.size()}, features.edge_context.bin);
+    file.add("position", {3, features.unary.rows}, features.position);
     file.add("face_area", {features.face_area.size()}, features.face_area);
     file.add("edges", {features.edges.size(), 2}, flatten(features.edges));
     file.add("edge_length", {features.edge_length.size()}, features.edge_length);
@@ -63,6 +64,7 @@ FeatureMatrix matrix_from(const TensorFile& file, const std::string& name, std::
 MeshFeatures features_from_file(const TensorFile& file, std::size_t faces) {
     MeshFeatures features;
     features.face_area = file.get<float>("face_area", {faces});
+    features.position = file.get<float>("position", {3, faces});
     const auto edges = file.get<std::uint32_t>("edges", {TensorFile::k_any, 2});
     for (std::size_t e = 0; e < edges.size(); e += 2) features.edges.push_back({edges[e], edges[e + 1]});
     const std::size_t edge_count = features.edges.size();

@@ -43,7 +43,7 @@ class CurvatureFamily {
 
 /// Spin images (A.1g), 100 columns.
 FeatureMatrix spin_features(const PreparedMesh& prepared);
-/// Face centers (A.1h), 3 columns.
+/// Face centers (A.1h), normalized units from the area centroid, 3 columns.
 FeatureMatrix orientation_features(const PreparedMesh& prepared);
 
 /// Means over the region around a face (not in the thesis), 66 columns. For geodesic radii of 10, 20 and 40% of the

@@ -119,7 +119,9 @@ MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& op
     clock.done("context");
     features.unary.append(region_features(prepared, features.unary));
     clock.done("regions");
-    if (options.orientation) features.unary.append(orientation_features(prepared));
+    FeatureMatrix orientation = orientation_features(prepared);
+    if (options.orientation) features.unary.append(orientation);
+    features.position = std::move(orientation.values);
     features.face_area = in_median_units(prepared.area_share);
     return features;
 }

@@ -20,7 +20,8 @@ struct FeatureOptions {
     /// Number of faces that represent the surface in distance statistics, shape contexts, spin images and contextual
     /// features; all faces if the mesh has fewer. Sums converge as it grows.
     std::size_t samples = 1000;
-    /// Adds the face centers' coordinates (App. A.1h), for data sets whose shapes are oriented alike.
+    /// Adds the face centers' coordinates (App. A.1h) to the faces' features. Labeling adds them itself, see
+    /// set_orientation.
     bool orientation = false;
 };
 
@@ -40,6 +41,7 @@ struct MeshFeatures {
     FeatureMatrix pairwise;  ///< per interior edge (App. A.2a-d): 186 features
     ContextGeometry context;
     EdgeNeighborhood edge_context;
+    std::vector<float> position;                      ///< 3 x F: x, y and z of the face centers (App. A.1h)
     std::vector<float> face_area;                     ///< F, in units of the median face area (Eq. 3.1)
     std::vector<std::array<std::uint32_t, 2>> edges;  ///< E interior edges: the two faces
     std::vector<float> edge_length;                   ///< E, in units of the median edge length (Eq. 3.1)

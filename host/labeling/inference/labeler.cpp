@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
 #include "host/core/errors.h"
@@ -13,6 +15,7 @@
 #include "host/labeling/features/edge_context.h"
 #include "host/labeling/inference/cascade_prediction.h"
 #include "host/labeling/inference/crf.h"
+#include "host/labeling/inference/mesh_turn.h"
 
 namespace exemplar {
 namespace {
@@ -103,6 +106,39 @@ std::vector<FaceScores> score_in_stages(const LabelingModel& model, Meshes meshe
     return scores;
 }
 
+/// Turns the meshes to lie like those of training if the model has coordinates. Returns the angles, in degrees.
+std::vector<float> orient(const LabelingModel& model, Meshes meshes) {
+    std::vector<float> turned(meshes.size(), 0);
+    if (!uses_orientation(model)) return turned;
+    const std::size_t base = model.unary_names.size() - orientation_names().size();
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+        if (meshes[m]->unary.cols() >= base) set_orientation(*meshes[m], base, Eigen::Matrix3f::Identity());
+        check_features(model, *meshes[m]);
+        const Eigen::Matrix3f turn = likeliest_turn(model, *meshes[m]);
+        set_orientation(*meshes[m], base, turn);
+        turned[m] = Eigen::AngleAxisf(turn).angle() * 180 / std::numbers::pi_v<float>;
+    }
+    return turned;
+}
+
+/// Runs all classifiers, on the device where the meshes fit.
+std::vector<FaceScores> score_oriented(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
+    if (!backend.cascade) return score_in_stages(model, meshes, backend);
+    std::vector<FaceScores> scores;
+    while (!meshes.empty()) {
+        check_interrupt();
+        std::size_t count = backend.cascade->fitting(model, meshes);
+        const bool fits = count > 0;
+        while (!fits && ++count < meshes.size() && backend.cascade->fitting(model, meshes.subspan(count)) == 0) {
+        }
+        std::vector<FaceScores> some = fits ? backend.cascade->score(model, meshes.first(count))
+                                            : score_in_stages(model, meshes.first(count), backend);
+        meshes = meshes.subspan(some.size());
+        std::ranges::move(some, std::back_inserter(scores));
+    }
+    return scores;
+}
+
 }  // namespace
 
 std::vector<std::string> edge_context_names() {
@@ -138,7 +174,9 @@ std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const 
 
 void drop_context_columns(MeshFeatures& features) {
     for (FeatureMatrix* matrix : {&features.unary, &features.pairwise}) {
-        const auto is_context = [](const std::string& name) { return name.starts_with("context."); };
+        const auto is_context = [](const std::string& name) {
+            return name.starts_with("context.") || name.starts_with("orientation.");
+        };
         matrix->names.erase(std::find_if(matrix->names.begin(), matrix->names.end(), is_context), matrix->names.end());
         matrix->values.resize(matrix->cols() * matrix->rows);
     }
@@ -161,20 +199,10 @@ void add_seconds(const char* stage, double seconds, std::span<FaceScores> scores
 
 std::vector<FaceScores> score_faces(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
                                     const LabelingBackend& backend) {
+    const std::vector<float> turned = orient(model, meshes);
     for (const MeshFeatures* mesh : meshes) check_features(model, *mesh);
-    if (!backend.cascade) return score_in_stages(model, meshes, backend);
-    std::vector<FaceScores> scores;
-    while (!meshes.empty()) {
-        check_interrupt();
-        std::size_t count = backend.cascade->fitting(model, meshes);
-        const bool fits = count > 0;
-        while (!fits && ++count < meshes.size() && backend.cascade->fitting(model, meshes.subspan(count)) == 0) {
-        }
-        std::vector<FaceScores> some = fits ? backend.cascade->score(model, meshes.first(count))
-                                            : score_in_stages(model, meshes.first(count), backend);
-        meshes = meshes.subspan(some.size());
-        std::ranges::move(some, std::back_inserter(scores));
-    }
+    std::vector<FaceScores> scores = score_oriented(model, meshes, backend);
+    for (std::size_t m = 0; m < scores.size(); ++m) scores[m].turned = turned[m];
     return scores;
 }
 
@@ -185,6 +213,7 @@ FaceLabeling cut_faces(const LabelingModel& model, const MeshFeatures& features,
     FaceLabeling result;
     result.probabilities = std::move(scores.probabilities);
     result.seconds = std::move(scores.seconds);
+    result.turned = scores.turned;
     const CrfTerms terms = make_crf_terms(features, result.probabilities, classes, scores.boundary);
     result.label = solve_crf(features, terms, model.crf);
     merge_small_components(features, model.crf, model.smallest_component, result.label);

@@ -14,8 +14,9 @@ namespace exemplar {
 
 /// Output of the classifiers for one mesh, before the graph cut.
 struct FaceScores {
-    std::vector<float> probabilities;                     ///< faces x classes, from the unary cascade
-    std::vector<float> boundary;                          ///< P(boundary) per interior edge
+    std::vector<float> probabilities;  ///< faces x classes, from the unary cascade
+    std::vector<float> boundary;       ///< P(boundary) per interior edge
+    float turned = 0;  ///< degrees that the mesh had to be turned to lie like those of training; 0 without coordinates
     std::vector<std::pair<std::string, double>> seconds;  ///< its share of the wall time: unary, pairwise
 };
 
@@ -41,6 +42,7 @@ struct FaceLabeling {
     std::vector<std::int32_t> label;                      ///< after the CRF and the merging of small pieces
     std::vector<float> probabilities;                     ///< faces x classes, from the unary cascade
     std::vector<float> confidence;                        ///< probability of the assigned label
+    float turned = 0;                                     ///< see FaceScores
     std::vector<std::pair<std::string, double>> seconds;  ///< wall time: unary, pairwise, cut
 };
 
@@ -57,7 +59,7 @@ std::vector<float> boundary_column(std::span<const float> probabilities);
 /// them.
 std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const std::vector<std::string>& names);
 
-/// Removes the contextual columns of both matrices.
+/// Removes the columns that are not of the mesh alone: contextual ones of both matrices, and coordinates.
 void drop_context_columns(MeshFeatures& features);
 
 /// Throws ModelError if the features of a mesh are not those that the model was trained on.

@@ -28,7 +28,6 @@ Json describe_model(const LabelingModel& model) {
     return {{"labels", model.label_names},
             {"colors", colors},
             {"samples", model.feature_options.samples},
-            {"orientation", model.feature_options.orientation},
             {"unary_features", model.unary_names},
             {"pairwise_features", model.pairwise_names},
             {"unary_stages", model.unary.size()},
@@ -62,7 +61,6 @@ void read_model_description(const TensorFile& file, LabelingModel& model) {
     model.label_names = json.at("labels").get<std::vector<std::string>>();
     for (const Json& color : json.at("colors")) model.label_colors.push_back(color_of(file, color));
     model.feature_options.samples = whole_number(file, json.at("samples"));
-    model.feature_options.orientation = json.at("orientation");
     model.unary_names = json.at("unary_features").get<std::vector<std::string>>();
     model.pairwise_names = json.at("pairwise_features").get<std::vector<std::string>>();
     model.unary.resize(std::min<std::size_t>(whole_number(file, json.at("unary_stages")), k_max_stages));

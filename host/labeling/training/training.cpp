@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "host/core/errors.h"
 #include "host/core/progress.h"
@@ -16,6 +17,7 @@
 #include "host/data/result_cache.h"
 #include "host/labeling/features/edge_context.h"
 #include "host/labeling/inference/cascade_prediction.h"
+#include "host/labeling/inference/mesh_turn.h"
 #include "host/labeling/training/fold_boosting.h"
 
 namespace exemplar {
@@ -28,7 +30,10 @@ constexpr std::size_t k_pairwise_stages = 2;  ///< base features, then with the 
 /// be slightly worse: with few meshes the classifiers of the folds learn less from the context, which differs from
 /// mesh to mesh, than the classifier of all meshes.
 constexpr double k_max_unary_loss_ratio = 1.05, k_max_pairwise_loss_ratio = 1;
-constexpr float k_sliver = 0.02F;  ///< share of a label's largest piece in the mesh
+/// Coordinates are kept if the out-of-fold loss is below this factor times that without them.
+constexpr double k_max_oriented_loss_ratio = 0.9;
+constexpr std::size_t k_min_oriented_meshes = 3;  ///< to tell that they are oriented alike
+constexpr float k_sliver = 0.02F;                 ///< share of a label's largest piece in the mesh
 constexpr std::size_t k_no_mesh = static_cast<std::size_t>(-1);
 constexpr std::uint64_t k_unary_task = 1000, k_pairwise_task = 2000, k_fold_task = 1;
 
@@ -144,7 +149,8 @@ struct Cascade {
     double max_loss_ratio;     ///< a stage is kept if its loss is below this factor times that of the stage before
     FoldBoostingOptions task;  ///< its number of features and seed are set per stage
     std::size_t base_features, context_features;
-    std::vector<BoostingItems> items;  ///< per mesh
+    std::vector<BoostingItems> items;         ///< per mesh
+    std::optional<FoldBoostingResult> first;  ///< the first stage, if it is trained already
     /// Fills the contextual columns of a mesh from the out-of-fold probabilities (items x classes) of the last stage.
     std::function<void(std::size_t mesh, std::span<const float> probabilities)> add_context;
 };
@@ -163,8 +169,10 @@ PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer&
         for (std::size_t m = 0; m < kept.size(); ++m) cascade.add_context(m, kept[m]);
         cascade.task.features = cascade.base_features + (stage > 0 ? cascade.context_features : 0);
         cascade.task.seed = first_seed + stage;
-        FoldBoostingResult result =
-            run_stage(fmt::format("{} {}", cascade.name, stage), cascade.items, cascade.task, options, scorer, report);
+        FoldBoostingResult result = stage == 0 && cascade.first
+                                        ? std::move(*cascade.first)
+                                        : run_stage(fmt::format("{} {}", cascade.name, stage), cascade.items,
+                                                    cascade.task, options, scorer, report);
         if (stage > 0 && !(result.loss < cascade.max_loss_ratio * last_loss)) {
             report.stages.back().kept = false;
             break;
@@ -182,6 +190,34 @@ PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer&
     return kept;
 }
 
+/// Trains the first unary stage without and with the coordinates of the face centers (App. A.1h), or with what the
+/// options ask for, and keeps the better one. The meshes of a fold take part as they lie, so the held-out loss tells
+/// whether all lie alike.
+void train_first_stage(Cascade& cascade, std::vector<MeshFeatures>& features, const TrainOptions& options,
+                       StumpScorer& scorer, LabelingModel& model, TrainReport& report) {
+    const bool can_judge = features.size() >= k_min_oriented_meshes;
+    const auto run = [&](const char* what) {
+        cascade.task.features = cascade.base_features;
+        return run_stage(what, cascade.items, cascade.task, options, scorer, report);
+    };
+    if (options.orientation != OrientationUse::always) cascade.first = run("unary 0");
+    if (options.orientation == OrientationUse::never ||
+        (options.orientation == OrientationUse::automatic && !can_judge))
+        return;
+    const std::size_t base = cascade.base_features;
+    for (MeshFeatures& mesh : features) set_orientation(mesh, base, Eigen::Matrix3f::Identity());
+    cascade.base_features = features.front().unary.cols();
+    FoldBoostingResult oriented = run("unary 0, xyz");
+    if (!cascade.first || oriented.loss < k_max_oriented_loss_ratio * cascade.first->loss) {
+        if (cascade.first) report.stages.front().kept = false;
+        cascade.first = std::move(oriented);
+        model.unary_names = features.front().unary.names;
+    } else {
+        report.stages.back().kept = false;
+        cascade.base_features = base;
+    }
+}
+
 /// Trains the unary cascade; returns the out-of-fold probabilities of its last kept stage.
 PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features, const Folds& folds,
                     const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
@@ -194,7 +230,7 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
     favor_rare_labels(corpus, weights);
 
     Cascade cascade{
-        "unary", options.max_stages, k_max_unary_loss_ratio, {}, model.unary_names.size(), context.size(), {}, {}};
+        "unary", options.max_stages, k_max_unary_loss_ratio, {}, model.unary_names.size(), context.size(), {}, {}, {}};
     cascade.task.classes = classes;
     cascade.task.linear = options.linear;
     cascade.task.patience = 0;  // the error keeps falling when the loss rises: see docs/labeling.md
@@ -206,6 +242,7 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
         backend.context.accumulate(features[m].context, probabilities, classes,
                                    context_columns(features[m].unary, model.unary_names.size(), context));
     };
+    train_first_stage(cascade, features, options, backend.scorer, model, report);
     return train_cascade(std::move(cascade), options, backend.scorer, model.unary, model.linear, &model.averaged_labels,
                          report);
 }
@@ -264,6 +301,7 @@ PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& f
                     {},
                     model.pairwise_names.size(),
                     EdgeNeighborhood::k_bins,
+                    {},
                     {},
                     {}};
     cascade.task.binary = true;
@@ -360,6 +398,18 @@ void train_crf(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& fea
 }
 
 }  // namespace
+
+std::vector<std::string> orientation_uses() {
+    return {"auto", "yes", "no"};
+}
+
+OrientationUse orientation_use(const std::string& name) {
+    const std::vector<std::string> names = orientation_uses();
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end())
+        throw UsageError(fmt::format("orientation is {}, not {}", fmt::join(names, ", "), name.substr(0, 40)));
+    return static_cast<OrientationUse>(found - names.begin());
+}
 
 LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features,
                              const TrainOptions& options, const LabelingBackend& backend, TrainReport& report) {

@@ -13,7 +13,19 @@
 namespace exemplar {
 
 /// Version of the training; raise it with every change that alters the model of equal meshes and options.
-constexpr int k_training_version = 5;
+constexpr int k_training_version = 6;
+
+/// Whether faces are also classified by where they are (App. A.1h).
+enum class OrientationUse {
+    automatic,  ///< if that lowers the held-out loss clearly: the meshes are oriented alike
+    always,
+    never
+};
+
+/// Returns "auto", "yes" and "no".
+std::vector<std::string> orientation_uses();
+/// Returns the use of a name of orientation_uses. Throws UsageError for another name.
+OrientationUse orientation_use(const std::string& name);
 
 struct TrainOptions {
     std::uint64_t seed = 1;
@@ -25,6 +37,7 @@ struct TrainOptions {
     double feature_fraction = 0.06;  ///< share of the features that are tried in each round, drawn at random
     double shrinkage = 0.5;          ///< factor on each stump's response
     bool linear = true;              ///< combine face classifiers with linear ones if that lowers the held-out loss
+    OrientationUse orientation = OrientationUse::automatic;
     FeatureOptions features;
 };
 

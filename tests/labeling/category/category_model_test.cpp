@@ -330,13 +330,12 @@ std::string category_error_after(const std::function<void(TensorFile&)>& change)
 TEST(CategoryModelFile, RoundTripKeepsEverythingAndTheBytes) {
     const TemporaryFolder folder;
     CategorizedShapes shapes = made_up_shapes({3, 4, 5});
-    shapes.feature_options = {123, true};
+    shapes.feature_options.samples = 123;
     const CategoryModel model = trained_categories(shapes, 18446744073709551615ULL);
     save_category_model(folder / "model", model);
     const CategoryModel again = load_category_model(folder / "model");
     EXPECT_EQ(again.category_names, model.category_names);
     EXPECT_EQ(again.feature_options.samples, 123U);
-    EXPECT_TRUE(again.feature_options.orientation);
     EXPECT_EQ(again.features, model.features);
     EXPECT_EQ(again.provenance, shapes.provenance);
     EXPECT_EQ(again.seed, model.seed);
@@ -382,7 +381,6 @@ TEST(CategoryModelFile, InconsistentContentIsRefused) {
         {"\"sharpness\":", "\"sharpness\":-"},
         {"\"evidence_slope\":", "\"evidence_slope\":-"},
         {"\"least_confidence\":", "\"least_confidence\":2"},
-        {"\"orientation\":false", "\"orientation\":1"},
         {"\"seed\":1", "\"seed\":1.5"},
         {"\"features\"", "\"feature\""}};
     for (const auto& pair : replacements)

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <filesystem>
 #include <thread>
@@ -12,7 +13,9 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/parallel.h"
+#include "host/core/random.h"
 #include "host/labeling/evaluation/evaluation.h"
+#include "host/labeling/inference/mesh_turn.h"
 #include "host/synth/shapes/shapes.h"
 #include "tests/support/shapes.h"
 
@@ -185,7 +188,9 @@ class CountingBackend {
 };
 
 TEST_F(SlowTraining, ManyMeshesAreScoredTogetherAndCutOnThreadsAsOneByOne) {
-    const LabelingModel model = train(generated("human", 1, 3, 1000), quick_options());
+    TrainOptions options = quick_options();
+    options.orientation = OrientationUse::never;
+    const LabelingModel model = train(generated("human", 1, 3, 1000), options);
     ASSERT_EQ(model.unary.size(), 2U);
     ASSERT_FALSE(model.pairwise.empty());
     std::vector<MeshFeatures> features;
@@ -219,6 +224,74 @@ TEST_F(SlowTraining, ManyMeshesAreScoredTogetherAndCutOnThreadsAsOneByOne) {
             EXPECT_EQ(together[m].seconds[i].first, (std::array{"unary", "pairwise", "cut"})[i]);
     }
     EXPECT_TRUE(score_faces(model, {}, counting.labeling()).empty());
+}
+
+/// Balls that nothing but the direction up divides, squeezed a little in each direction, each turned by `turn(i)`.
+template <typename Turn>
+LabeledCorpus divided_balls(std::size_t count, const Turn& turn) {
+    LabeledCorpus corpus;
+    corpus.names = {"lower", "upper"};
+    Random random(5);
+    for (std::size_t i = 0; i < count; ++i) {
+        TriangleMesh mesh = shapes::icosphere(3, 1);
+        std::vector<std::int32_t> label;
+        for (const Face& face : mesh.faces)
+            label.push_back(mesh.vertices[face[0]].z() + mesh.vertices[face[1]].z() + mesh.vertices[face[2]].z() > 0);
+        Vec3 squeeze;
+        for (int axis = 0; axis < 3; ++axis) squeeze[axis] = static_cast<float>(random.uniform(0.8, 1.2));
+        const Eigen::Matrix3f turned = turn(i);
+        for (Vec3& vertex : mesh.vertices) vertex = turned * vertex.cwiseProduct(squeeze);
+        corpus.meshes.push_back({"ball" + std::to_string(i), {}, std::move(mesh), std::move(label)});
+    }
+    return corpus;
+}
+
+Eigen::Matrix3f untouched(std::size_t) {
+    return Eigen::Matrix3f::Identity();
+}
+
+TEST_F(SlowTraining, MeshesThatLieAlikeAreKnownByWhereTheirFacesAre) {
+    const LabeledCorpus corpus = divided_balls(5, untouched);
+    const LabelingModel model = train(corpus, quick_options());
+    EXPECT_TRUE(uses_orientation(model));
+    ASSERT_GT(report_.stages.size(), 1U);
+    EXPECT_FALSE(report_.stages[0].kept);
+    EXPECT_TRUE(report_.stages[1].kept);
+    const LabeledMesh unseen = divided_balls(7, untouched).meshes.back();
+    MeshFeatures features = compute_features(unseen.mesh, model.feature_options);
+    const FaceLabeling labeling = label_faces(model, features, {scorer_, context_});
+    EXPECT_EQ(labeling.turned, 0);
+    EXPECT_GT(score_labeling(features.face_area, unseen.label, labeling.label, 2).recognition_rate, 0.9);
+
+    const fs::path path = fs::path(testing::TempDir()) / "exemplar_oriented.safetensors";
+    save_model(path, model);
+    EXPECT_EQ(label_faces(load_model(path), features, {scorer_, context_}).label, labeling.label);
+}
+
+TEST_F(SlowTraining, MeshesThatLieAnyhowAreNot) {
+    const auto anyhow = [](std::size_t i) {
+        return Eigen::AngleAxisf(static_cast<float>(i), Eigen::Vector3f(1, 0.3F, 0.1F).normalized()).toRotationMatrix();
+    };
+    const LabeledCorpus corpus = divided_balls(5, anyhow);
+    EXPECT_FALSE(uses_orientation(train(corpus, quick_options())));
+    ASSERT_GT(report_.stages.size(), 1U);
+    EXPECT_TRUE(report_.stages[0].kept);
+    EXPECT_FALSE(report_.stages[1].kept);
+}
+
+TEST_F(SlowTraining, OrientationIsUsedOrNotAsTheUserAsks) {
+    const LabeledCorpus corpus = divided_balls(3, untouched);
+    TrainOptions options = quick_options();
+    options.max_stages = 1;
+    for (const auto& [name, used] : {std::pair{"yes", true}, std::pair{"no", false}}) {
+        options.orientation = orientation_use(name);
+        EXPECT_EQ(uses_orientation(train(corpus, options)), used) << name;
+        EXPECT_EQ(report_.stages.front().kept, true);
+    }
+    EXPECT_THROW(orientation_use("perhaps"), UsageError);
+    options.orientation = OrientationUse::automatic;
+    const LabeledCorpus two = divided_balls(2, untouched);
+    EXPECT_FALSE(uses_orientation(train(two, options))) << "two meshes do not tell whether all lie alike";
 }
 
 TEST_F(SlowTraining, AModelRefusesOtherFeatures) {

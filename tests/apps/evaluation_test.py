@@ -210,6 +210,20 @@ class Evaluate(WithModel):
             self.assertEqual(len(split["train"]), 2)
             self.assertNotIn(split["meshes"][0]["mesh"], split["train"])
 
+    def test_the_split_of_shapepfcn_goes_by_the_numbers_of_meshes(self):
+        shapes = self.folder / "numbered"
+        shapes.mkdir()
+        for number in range(7, 17):  # by name, 10 to 16 come before 7
+            for ending in (".off", "_labels.txt"):
+                shutil.copy(self.folder / f"cups/cup_00{1 + number % 2}{ending}", shapes / f"{number}{ending}")
+        self.call("label", "evaluate", "--protocol", "pfcn", "numbered", "--out", "pfcn", "--json", "pfcn.json", *QUICK)
+        [split] = self.json("pfcn.json")["categories"][0]["splits"]
+        self.assertEqual(split["train"], ["7", "8", "10", "12", "13", "15"])
+        self.assertEqual([mesh["mesh"] for mesh in split["meshes"]], ["9", "11", "14", "16"])
+        self.refused("label", "evaluate", "--protocol", "pfcn", "cups", "--out", "x", code=2, says="five meshes")
+        self.refused("label", "evaluate", "--protocol", "pfcn", "numbered", "--splits", "2", "--out", "x", code=2,
+                     says="pfcn")
+
     def test_protocol_leaves_what_a_model_made_alone(self):
         copy = self.folder / "labeled-before"
         shutil.copytree(self.folder / "cups", copy)
@@ -294,6 +308,32 @@ class Evaluate(WithModel):
         self.call("label", "evaluate", "--train", "cups", "--test", "quad.txt", "--humans", "people", "--out", "q", "--json",
                   "q.json", *QUICK)
         self.assertIsNotNone(self.json("q.json")["rand_error"])
+
+    def test_labels_of_another_program_are_rated_beside(self):
+        peer = self.folder / "peer" / "cups"
+        peer.mkdir(parents=True)
+        shutil.copy(self.folder / "cups/cup_001_labels.txt", peer)  # all right
+        lines = (self.folder / "cups/cup_002_labels.txt").read_text().split("\n")
+        wrong = {"body": "handle", "handle": "spout"}  # all wrong, with a label that nothing else has
+        (peer / "cup_002_labels.txt").write_text("\n".join(wrong.get(line, line) for line in lines))
+        said = self.call("label", "evaluate", "--protocol", "sb19", "cups", "--out", "peers", "--peer", "peer", "--json",
+                         "peers.json", *QUICK).stdout
+        report = self.json("peers.json")
+        rated = {mesh["mesh"]: mesh.get("peer") for split in report["categories"][0]["splits"] for mesh in split["meshes"]}
+        self.assertEqual(rated["cup_001"], {"recognition_rate": 1, "segment_weighted_accuracy": 1})
+        self.assertEqual(rated["cup_002"], {"recognition_rate": 0, "segment_weighted_accuracy": 0})
+        self.assertIsNone(rated["cup_003"])
+        means = report["categories"][0]["peer"]
+        self.assertEqual([means[key] for key in ("meshes", "recognition_rate", "ahead")], [2, 0.5, 1])
+        own = [mesh["recognition_rate"] for split in report["categories"][0]["splits"] for mesh in split["meshes"]][:2]
+        self.assertAlmostEqual(means["own_recognition_rate"], sum(own) / 2)
+        self.assertEqual(report["peer"], means)
+        self.assertIn("peer RR", said)
+        (self.folder / "nothing").mkdir()
+        self.refused("label", "evaluate", "--protocol", "sb19", "cups", "--out", "peers", "--peer", "nothing", *QUICK,
+                     code=1, says="labels of no test mesh")
+        self.refused("label", "evaluate", "--protocol", "sb19", "cups", "--out", "peers", "--peer", "nowhere", code=2,
+                     says="nowhere")
 
     def test_splits_do_not_apply_to_leave_one_out(self):
         self.refused("label", "evaluate", "--protocol", "sb19", "cups", "--splits", "2", "--out", "x", code=2, says="sb19")

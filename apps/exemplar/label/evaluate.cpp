@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -13,6 +14,7 @@
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/label/category_folders.h"
 #include "apps/exemplar/label/evaluation_run.h"
+#include "apps/exemplar/label/peer_labels.h"
 #include "host/core/errors.h"
 
 namespace exemplar {
@@ -23,7 +25,7 @@ namespace fs = std::filesystem;
 struct EvaluateCommand {
     CommonOptions common;
     std::vector<fs::path> train_sets, test_sets, train_on, test_on;
-    fs::path folder, out, report, humans, labels;
+    fs::path folder, out, report, humans, labels, peer;
     fs::path cache = default_feature_folder();
     std::string protocol;
     std::optional<std::size_t> splits;
@@ -71,19 +73,43 @@ fs::path human_folder(const EvaluateCommand& options, const fs::path& category) 
     return {};
 }
 
+/// The split that ShapePFCN (Kalogerakis et al., CVPR 2017) was tested on: of each five meshes, in the order of their
+/// numbers, the third and the fifth are test meshes.
+Split pfcn_split(const std::vector<fs::path>& meshes) {
+    if (meshes.size() < 5) throw UsageError(fmt::format("pfcn splits five meshes or more, not {}", meshes.size()));
+    std::vector<std::size_t> order(meshes.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto number = [&](std::size_t mesh) {
+        const std::string name = meshes[mesh].stem().string();
+        return std::pair(name.size(), name);
+    };
+    std::ranges::stable_sort(order, {}, number);
+    Split split;
+    for (std::size_t i = 0; i < order.size(); ++i)
+        (i % 5 == 2 || i % 5 == 4 ? split.test : split.train).push_back(order[i]);
+    return split;
+}
+
+/// Divides the meshes of a category as the protocol does.
+std::vector<Split> protocol_splits(const EvaluateCommand& options, const std::vector<fs::path>& meshes) {
+    if (options.protocol == "pfcn") return {pfcn_split(meshes)};
+    const std::size_t size = protocol_size(options.protocol);
+    return make_splits(meshes.size(), size ? size : meshes.size() - 1,
+                       size ? options.splits.value_or(1) : meshes.size(), options.train.seed);
+}
+
 std::vector<EvaluationTask> protocol_tasks(const EvaluateCommand& options) {
     std::vector<EvaluationTask> tasks;
     if (options.protocol == "sb19" && options.splits)
         throw UsageError("--splits does not apply to sb19, which leaves out each mesh in turn");
+    if (options.protocol == "pfcn" && options.splits)
+        throw UsageError("--splits does not apply to pfcn, a single split");
     if (options.folder.empty()) throw UsageError("--protocol needs the folder of a category, or of several");
     for (const fs::path& folder : category_folders(options.folder, options.labels)) {
         const fs::path category = without_trailing_slash(folder);
         const std::vector<fs::path> meshes = list_meshes(category);
         require_distinct_names(meshes);
-        const std::size_t size = protocol_size(options.protocol);
-        const std::vector<Split> splits =
-            make_splits(meshes.size(), size ? size : meshes.size() - 1,
-                        size ? options.splits.value_or(1) : meshes.size(), options.train.seed);
+        const std::vector<Split> splits = protocol_splits(options, meshes);
         for (std::size_t k = 0; k < splits.size(); ++k) {
             EvaluationTask task{category.filename().string(),
                                 fmt::format("{}-{}", options.protocol, k),
@@ -153,11 +179,13 @@ EvaluationTask set_task(const EvaluateCommand& options) {
 
 std::vector<EvaluationTask> make_tasks(const EvaluateCommand& options) {
     if (!options.labels.empty()) require_input(options.labels);
+    if (!options.peer.empty()) require_input(options.peer);
     if (!options.protocol.empty()) return protocol_tasks(options);
     if (options.train_on.empty() != options.test_on.empty()) throw UsageError("--train-on and --test-on go together");
     if (options.train_on.empty() && (options.train_sets.empty() || options.test_sets.empty()))
         throw UsageError(
-            "give --train SET and --test SET, --train-on SET and --test-on SET, or --protocol sb3|sb6|sb12|sb19 DIR");
+            "give --train SET and --test SET, --train-on SET and --test-on SET, or --protocol sb3|sb6|sb12|sb19|pfcn "
+            "DIR");
     return {set_task(options)};
 }
 
@@ -182,9 +210,11 @@ void run_label_evaluate(const EvaluateCommand& options) {
                        .fresh = options.fresh,
                        .learning_curve = options.curve,
                        .report = options.report});
-    const nlohmann::json report = run.evaluate(tasks, protocol_name(options), "Mesh labeling on unseen shapes");
+    nlohmann::json report = run.evaluate(tasks, protocol_name(options), "Mesh labeling on unseen shapes");
 
+    if (!options.peer.empty()) compare_with_peer(report, tasks, options.peer);
     print_evaluation(report);
+    if (!options.peer.empty()) print_peer(report);
     fmt::print("\nreport: {}\n", ((options.report.empty() ? out : options.report) / "index.html").string());
     if (!scratch) write_json(out / "report.json", report);
     write_report(options.common, report);
@@ -200,9 +230,11 @@ void add_mesh_options(Command& command, EvaluateCommand& options) {
     Option* test_on = command.add_option("--test-on", options.test_on,
                                          "test meshes of it; rated by the label names that both categories have");
     for (Option* option : {train_on, test_on}) option->excludes(train)->excludes(test);
-    Option* protocol = command.add_option(
-        "--protocol", options.protocol, "train on 3, 6 or 12 random meshes of each category, or on all but one (sb19)");
-    protocol->check(one_of({"sb3", "sb6", "sb12", "sb19"}))->type_name("");
+    Option* protocol =
+        command.add_option("--protocol", options.protocol,
+                           "train on 3, 6 or 12 random meshes of each category, on all but one (sb19), or on three "
+                           "of each five (pfcn: the split that ShapePFCN was tested on)");
+    protocol->check(one_of({"sb3", "sb6", "sb12", "sb19", "pfcn"}))->type_name("");
     for (Option* option : {train, test, train_on, test_on}) {
         option->type_name("SET");
         protocol->excludes(option);
@@ -210,11 +242,16 @@ void add_mesh_options(Command& command, EvaluateCommand& options) {
     command.add_option("DIR", options.folder, "category folder, or folder of category folders, for --protocol")
         ->needs(protocol)
         ->type_name("");
-    command.add_option("--splits", options.splits, "random splits per category, one unless given; not for sb19")
+    command
+        .add_option("--splits", options.splits, "random splits per category, one unless given; not for sb19 and pfcn")
         ->check(whole_number(1, 1000))
         ->needs(protocol);
     command
         .add_option("--humans", options.humans, "folder of human segmentations, NAME/*.seg, to compare segments with")
+        ->type_name("FOLDER");
+    command
+        .add_option("--peer", options.peer,
+                    "folder of another program's labels of the test meshes, CATEGORY/NAME_labels.txt, to compare with")
         ->type_name("FOLDER");
     command
         .add_option("--labels", options.labels,

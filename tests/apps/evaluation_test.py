@@ -332,7 +332,7 @@ class Evaluate(WithModel):
         (self.folder / "nothing").mkdir()
         self.refused("label", "evaluate", "--protocol", "sb19", "cups", "--out", "peers", "--peer", "nothing", *QUICK,
                      code=1, says="labels of no test mesh")
-        self.refused("label", "evaluate", "--protocol", "sb19", "cups", "--out", "peers", "--peer", "nowhere", code=2,
+        self.refused("label", "evaluate", "--protocol", "sb19", "cups", "--out", "peers", "--peer", "nowhere", code=1,
                      says="nowhere")
 
     def test_splits_do_not_apply_to_leave_one_out(self):

@@ -56,8 +56,9 @@ class Reports(WithModel):
         self.check("label apply", {**report, "split": None})
 
     def test_evaluate(self):
-        self.call("label", "evaluate", "--train-on", "cups", "cups/cup_001.off", "--test-on", self.mistaken_cups(), "--out", "e", "--json",
-                  "e.json", "--curve", *QUICK)
+        tested = self.mistaken_cups()
+        self.call("label", "evaluate", "--train-on", "cups", "cups/cup_001.off", "--test-on", tested, "--out", "e", "--json",
+                  "e.json", "--curve", "--peer", tested, *QUICK)
         self.check("label evaluate", self.json("e.json"))
 
     def test_people(self):

@@ -188,7 +188,7 @@ def train_labeling(
     shrinkage: float = ...,
     linear: bool = ...,
     samples: int = ...,
-    orientation: bool = ...,
+    orientation: str = ...,
     cache: _Path = ...,
     device: str = ...,
 ) -> LabelingModel: ...

@@ -277,7 +277,7 @@ PEERS = {
     "decision tree": (lambda rows, **grid: Plain(DecisionTreeClassifier(random_state=1, max_features=0.5, **grid)),
                       {"min_samples_leaf": [1, 5, 20, 80]}),
     "linear SVM": (lambda rows, C: Scaled(LinearSVC(C=C / rows, dual=False, tol=1e-3, max_iter=200)), {"C": [0.3, 1, 10, 100]}),
-    "Gaussian Bayes": (lambda rows, **grid: Scaled(GaussianBayes(**grid)), {"smoothing": [0.1, 0.5, 0.9, 1], "prior": [0, 100]}),
+    "Gaussian Bayes, full": (lambda rows, **grid: Scaled(GaussianBayes(**grid)), {"smoothing": [0.1, 0.5, 0.9, 1], "prior": [0, 100]}),
     "logistic, L1": (lambda rows, C: Scaled(LogisticRegression(C=C / rows, penalty="l1", solver="liblinear", tol=1e-3,
                                                                random_state=1, max_iter=50)), {"C": [100, 300, 1000, 3000]}),
     "nearest neighbors": (lambda rows, **grid: Scaled(KNeighborsClassifier(**grid)), {"n_neighbors": [1, 5, 25]}),

@@ -113,7 +113,7 @@ class StubTest(unittest.TestCase):
     def test_a_type_checker_takes_it(self):
         user = ("import exemplar\n"
                 "mesh = exemplar.Mesh([(0, 0, 0)], [(0, 0, 0)])\n"
-                "model = exemplar.train_labeling([mesh], rounds=3)\n"
+                "model = exemplar.train_labeling([mesh], rounds=3, orientation='no')\n"
                 "wrong: int = model.label(mesh).labels\n"
                 "exemplar.features(mesh, sample=3)\n")
         with tempfile.TemporaryDirectory(prefix="exemplar-mypy-") as folder:

@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <numeric>
 #include <optional>
 #include <set>
 
@@ -75,24 +74,18 @@ fs::path human_folder(const EvaluateCommand& options, const fs::path& category) 
 
 /// The split that ShapePFCN (Kalogerakis et al., CVPR 2017) was tested on: of each five meshes, in the order of their
 /// numbers, the third and the fifth are test meshes.
-Split pfcn_split(const std::vector<fs::path>& meshes) {
-    if (meshes.size() < 5) throw UsageError(fmt::format("pfcn splits five meshes or more, not {}", meshes.size()));
-    std::vector<std::size_t> order(meshes.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto number = [&](std::size_t mesh) {
-        const std::string name = meshes[mesh].stem().string();
-        return std::pair(name.size(), name);
-    };
-    std::ranges::stable_sort(order, {}, number);
+Split pfcn_split(const fs::path& category, const std::vector<fs::path>& meshes) {
+    if (meshes.size() < 5)
+        throw UsageError(fmt::format("{}: pfcn splits five meshes or more, not {}", category.string(), meshes.size()));
     Split split;
-    for (std::size_t i = 0; i < order.size(); ++i)
-        (i % 5 == 2 || i % 5 == 4 ? split.test : split.train).push_back(order[i]);
+    for (std::size_t i = 0; i < meshes.size(); ++i) (i % 5 == 2 || i % 5 == 4 ? split.test : split.train).push_back(i);
     return split;
 }
 
 /// Divides the meshes of a category as the protocol does.
-std::vector<Split> protocol_splits(const EvaluateCommand& options, const std::vector<fs::path>& meshes) {
-    if (options.protocol == "pfcn") return {pfcn_split(meshes)};
+std::vector<Split> protocol_splits(const EvaluateCommand& options, const fs::path& category,
+                                   const std::vector<fs::path>& meshes) {
+    if (options.protocol == "pfcn") return {pfcn_split(category, meshes)};
     const std::size_t size = protocol_size(options.protocol);
     return make_splits(meshes.size(), size ? size : meshes.size() - 1,
                        size ? options.splits.value_or(1) : meshes.size(), options.train.seed);
@@ -109,7 +102,7 @@ std::vector<EvaluationTask> protocol_tasks(const EvaluateCommand& options) {
         const fs::path category = without_trailing_slash(folder);
         const std::vector<fs::path> meshes = list_meshes(category);
         require_distinct_names(meshes);
-        const std::vector<Split> splits = protocol_splits(options, meshes);
+        const std::vector<Split> splits = protocol_splits(options, category, meshes);
         for (std::size_t k = 0; k < splits.size(); ++k) {
             EvaluationTask task{category.filename().string(),
                                 fmt::format("{}-{}", options.protocol, k),
@@ -177,7 +170,7 @@ EvaluationTask set_task(const EvaluateCommand& options) {
     return task;
 }
 
-std::vector<EvaluationTask> make_tasks(const EvaluateCommand& options) {
+std::vector<EvaluationTask> tasks_of(const EvaluateCommand& options) {
     if (!options.labels.empty()) require_input(options.labels);
     if (!options.peer.empty()) require_input(options.peer);
     if (!options.protocol.empty()) return protocol_tasks(options);
@@ -187,6 +180,12 @@ std::vector<EvaluationTask> make_tasks(const EvaluateCommand& options) {
             "give --train SET and --test SET, --train-on SET and --test-on SET, or --protocol sb3|sb6|sb12|sb19|pfcn "
             "DIR");
     return {set_task(options)};
+}
+
+std::vector<EvaluationTask> make_tasks(const EvaluateCommand& options) {
+    std::vector<EvaluationTask> tasks = tasks_of(options);
+    if (!options.peer.empty()) require_peer(tasks, options.peer);
+    return tasks;
 }
 
 std::string protocol_name(const EvaluateCommand& options) {
@@ -212,9 +211,11 @@ void run_label_evaluate(const EvaluateCommand& options) {
                        .report = options.report});
     nlohmann::json report = run.evaluate(tasks, protocol_name(options), "Mesh labeling on unseen shapes");
 
-    if (!options.peer.empty()) compare_with_peer(report, tasks, options.peer);
     print_evaluation(report);
-    if (!options.peer.empty()) print_peer(report);
+    if (!options.peer.empty()) {
+        compare_with_peer(report, tasks, options.peer);
+        print_peer(report);
+    }
     fmt::print("\nreport: {}\n", ((options.report.empty() ? out : options.report) / "index.html").string());
     if (!scratch) write_json(out / "report.json", report);
     write_report(options.common, report);

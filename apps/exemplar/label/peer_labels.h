@@ -8,14 +8,18 @@
 
 namespace exemplar {
 
-/// Rates the labels that another program gave the test meshes, FOLDER/CATEGORY/NAME_labels.txt or
-/// FOLDER/NAME_labels.txt, beside those of an evaluation: adds `peer` to each mesh that it has labels for, to its
-/// category and to the report (docs/formats.md). Throws DataError if it has labels for no mesh, or for other faces than
-/// a mesh has.
+// Labels that another program gave test meshes: FOLDER/CATEGORY/NAME_labels.txt, or, of a single category, also
+// FOLDER/NAME_labels.txt.
+
+/// Throws DataError if the folder has labels for no test mesh.
+void require_peer(std::span<const EvaluationTask> tasks, const std::filesystem::path& folder);
+
+/// Rates the labels of the folder beside those of an evaluation: adds `peer` to each mesh that it has labels for, to
+/// its category and to the report (docs/formats.md). Throws DataError for labels of other faces than a mesh has.
 void compare_with_peer(nlohmann::json& report, std::span<const EvaluationTask> tasks,
                        const std::filesystem::path& folder);
 
-/// Prints, per category, the rates of the other program and on how many meshes each of both is ahead.
+/// Prints, per category, the rates of both, and on how many meshes each of them is ahead.
 void print_peer(const nlohmann::json& report);
 
 }  // namespace exemplar

@@ -59,6 +59,8 @@ void check_category_description(const TensorFile& file, const CategoryModel& mod
     if (model.feature_options.samples == 0 || model.feature_options.samples > k_max_samples)
         inconsistent(file, fmt::format("its features are of {} samples", model.feature_options.samples));
     if (model.features.empty()) inconsistent(file, "it has no features");
+    if (std::ranges::any_of(model.features, is_appended))
+        inconsistent(file, "it was trained with coordinates, which recognizers no longer take; train it again");
     if (!(model.sharpness > 0) || !std::isfinite(model.sharpness)) inconsistent(file, "its sharpness is not positive");
     if (!(model.confidence.slope >= 0) || !std::isfinite(model.confidence.slope) ||
         !std::isfinite(model.confidence.offset))

@@ -73,10 +73,10 @@ ShapeDescriptor compute_shape_descriptor(const MeshFeatures& features) {
         throw UsageError("a shape is described by the features and areas of its faces, of which there are none");
     if (central == unary.names.end())
         throw UsageError(fmt::format("a shape is described with the feature {}, which is not there", k_centrality));
-    const auto own = std::ranges::find_if(unary.names, [](const auto& name) { return name.starts_with("context."); });
+    const auto own_end = std::ranges::find_if(unary.names, is_appended);
 
     ShapeDescriptor shape;
-    shape.features.assign(unary.names.begin(), own);
+    shape.features.assign(unary.names.begin(), own_end);
     const std::size_t count = shape.features.size();
     shape.values.resize(k_shape_statistics * count);
     const std::vector<double> weights = face_weights(features.face_area);

@@ -21,10 +21,10 @@ constexpr std::size_t k_shape_statistics = 3;
 /// Version of the statistics (the features have their own, k_feature_version); changes whenever the values change.
 constexpr int k_shape_descriptor_version = 1;
 
-/// Computes the descriptor from the unary features, except the contextual ones that labeling appends, which depend on
-/// labels. A feature that does not vary has deviation and correlation 0. If no face has area, all faces count
-/// equally. All values are finite if the features are. Runs on all cores; the result does not depend on their number.
-/// Throws UsageError if there are no faces, or no feature `geodesic.mean`.
+/// Computes the descriptor from the unary features, except those that labeling appends (is_appended). A feature that
+/// does not vary has deviation and correlation 0. If no face has area, all faces count equally. All values are finite
+/// if the features are. Runs on all cores; the result does not depend on their number. Throws UsageError if there are
+/// no faces, or no feature `geodesic.mean`.
 ShapeDescriptor compute_shape_descriptor(const MeshFeatures& features);
 
 }  // namespace exemplar

@@ -48,9 +48,9 @@ TensorFile features_to_file(const MeshFeatures& features) {
     return file;
 }
 
-/// Room for the contextual features that later stages append without moving the others; with more labels they are
-/// moved once.
-constexpr std::size_t k_unary_room = 16 * k_context_measures * k_context_bins;
+/// Room for the coordinates and contextual features that later stages append without moving the others; with more
+/// labels they are moved once.
+constexpr std::size_t k_unary_room = 3 + 16 * k_context_measures * k_context_bins;
 constexpr std::size_t k_pairwise_room = EdgeNeighborhood::k_bins;
 
 FeatureMatrix matrix_from(const TensorFile& file, const std::string& name, std::size_t rows, std::size_t room) {

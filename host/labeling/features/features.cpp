@@ -84,6 +84,10 @@ void add_pairwise(const PreparedMesh& prepared, const CurvatureFamily::FaceValue
 
 }  // namespace
 
+bool is_appended(const std::string& name) {
+    return name.starts_with("context.") || name.starts_with("orientation.");
+}
+
 MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& options) {
     require_usable(mesh, "mesh");
     if (options.samples == 0 || options.samples > k_max_samples)

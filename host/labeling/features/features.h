@@ -49,6 +49,10 @@ struct MeshFeatures {
     std::vector<std::pair<std::string, double>> seconds;  ///< wall time per family
 };
 
+/// Returns whether a column is none of a mesh alone, but one that labeling appends: contextual ones, which depend on
+/// labels, and coordinates, which depend on how the mesh lies.
+bool is_appended(const std::string& name);
+
 /// Computes all features of a mesh, on all cores; the result does not depend on their number. feature_families.h
 /// documents the families. The unit of length is the 30th percentile of all geodesic distances, so values do not
 /// change when the mesh is moved, rotated or scaled. Inside-out meshes, closed or with small holes, are turned

@@ -174,10 +174,7 @@ std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const 
 
 void drop_context_columns(MeshFeatures& features) {
     for (FeatureMatrix* matrix : {&features.unary, &features.pairwise}) {
-        const auto is_context = [](const std::string& name) {
-            return name.starts_with("context.") || name.starts_with("orientation.");
-        };
-        matrix->names.erase(std::find_if(matrix->names.begin(), matrix->names.end(), is_context), matrix->names.end());
+        matrix->names.erase(std::ranges::find_if(matrix->names, is_appended), matrix->names.end());
         matrix->values.resize(matrix->cols() * matrix->rows);
     }
 }
@@ -199,10 +196,15 @@ void add_seconds(const char* stage, double seconds, std::span<FaceScores> scores
 
 std::vector<FaceScores> score_faces(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
                                     const LabelingBackend& backend) {
+    const Stopwatch watch;
     const std::vector<float> turned = orient(model, meshes);
+    const double seconds = watch.wall();
     for (const MeshFeatures* mesh : meshes) check_features(model, *mesh);
     std::vector<FaceScores> scores = score_oriented(model, meshes, backend);
-    for (std::size_t m = 0; m < scores.size(); ++m) scores[m].turned = turned[m];
+    for (std::size_t m = 0; m < scores.size(); ++m) {
+        scores[m].turned = turned[m];
+        scores[m].seconds.front().second += seconds / static_cast<double>(scores.size());  // of the unary cascade
+    }
     return scores;
 }
 

@@ -71,8 +71,8 @@ void add_seconds(const char* stage, double seconds, std::span<FaceScores> scores
 // together, then the graph cut of each mesh.
 
 /// Runs all classifiers for several different meshes together, if memory suffices. Each mesh gets the result that it
-/// would get alone, bit for bit on one device. May add the contextual columns to the features, or reuses them. Throws
-/// ModelError if the features of a mesh are not those that the model was trained on.
+/// would get alone, bit for bit on one device. Replaces columns that were appended to the features (is_appended) by
+/// those of this model. Throws ModelError if the features of a mesh are not those that the model was trained on.
 std::vector<FaceScores> score_faces(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
                                     const LabelingBackend& backend);
 /// Cuts a mesh into parts: the CRF on the result of score_faces, then the merging of small pieces. Runs on the host

@@ -96,7 +96,7 @@ class TurnJudge {
     std::vector<float> base_values_;  ///< base features without coordinates, feature-major
 };
 
-/// Turns a little further, about each axis in either direction, as long as that is better.
+/// Turns a little further about one axis, by at most one step of each size, where that is better.
 Eigen::Matrix3f refine(TurnJudge& judge, Eigen::Matrix3f best, double certainty) {
     for (const float degrees : k_refinements) {
         Turns near;
@@ -123,8 +123,9 @@ bool uses_orientation(const LabelingModel& model) {
 void set_orientation(MeshFeatures& features, std::size_t base, const Eigen::Matrix3f& turn) {
     FeatureMatrix& unary = features.unary;
     const std::size_t faces = unary.rows;
-    if (features.position.size() != 3 * faces || unary.cols() < base)
+    if (features.position.size() != 3 * faces)
         throw ModelError("the model knows faces by where they are, but the features of this mesh have no positions");
+    if (unary.cols() < base) throw ModelError("the features of this mesh are fewer than those of the model");
     unary.names.resize(base);
     unary.values.resize(base * faces);
     for (const std::string& name : orientation_names()) unary.add(name);

@@ -18,7 +18,7 @@ bool uses_orientation(const LabelingModel& model);
 /// those that follow are dropped. Throws ModelError if the features have no positions.
 void set_orientation(MeshFeatures& features, std::size_t base, const Eigen::Matrix3f& turn);
 
-/// Rotations of which one turns any mesh to within some 30 degrees of how it should lie. The first 24 turn axes to
+/// Rotations of which one turns any mesh to within 40 degrees of how it should lie. The first 24 turn axes to
 /// axes; the identity comes first.
 std::vector<Eigen::Matrix3f> coarse_turns();
 

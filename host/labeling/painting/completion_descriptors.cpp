@@ -37,8 +37,8 @@ std::string family_of(const std::string& name) {
 /// Returns the columns that are used, each with the weight that makes families count the same.
 std::vector<std::pair<std::size_t, float>> weighted_columns(const FeatureMatrix& features) {
     std::map<std::string, std::size_t> size;
-    for (const std::string& name : features.names) ++size[family_of(name)];
-    size.erase("context");
+    for (const std::string& name : features.names)
+        if (!is_appended(name)) ++size[family_of(name)];
     std::vector<std::pair<std::size_t, float>> columns;
     columns.reserve(features.cols());
     for (std::size_t c = 0; c < features.cols(); ++c) {

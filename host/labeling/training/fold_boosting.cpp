@@ -32,26 +32,59 @@ struct TrainingRows {
     std::vector<std::uint8_t> fold;
 };
 
-/// Returns the labeled items of a mesh, or a random part of them, in rising order.
-std::vector<std::uint32_t> chosen_rows(const BoostingItems& mesh, std::size_t limit, Random random) {
-    std::vector<std::uint32_t> rows;
-    for (std::uint32_t i = 0; i < mesh.label.size(); ++i)
-        if (mesh.label[i] >= 0) rows.push_back(i);
-    if (limit > 0 && rows.size() > limit) {
-        random.shuffle(rows);
-        rows.resize(limit);
-        std::sort(rows.begin(), rows.end());
+/// The items of a mesh that boosting uses, in rising order, and their weights.
+struct ChosenRows {
+    std::vector<std::uint32_t> row;
+    std::vector<float> weight;
+};
+
+/// Draws `limit` rows, but so many of each label, if there are, that half of the limit is dealt to the labels evenly: a
+/// label of few items would hardly be drawn.
+std::vector<std::uint32_t> draw_rows(const BoostingItems& mesh, std::vector<std::uint32_t> rows, std::size_t limit,
+                                     std::size_t classes, Random random) {
+    random.shuffle(rows);
+    std::vector<std::size_t> left(classes, limit / (2 * classes));
+    std::vector<std::uint32_t> drawn, others;
+    for (const std::uint32_t row : rows) {
+        std::size_t& of_label = left[static_cast<std::size_t>(mesh.label[row])];
+        (of_label > 0 ? drawn : others).push_back(row);
+        of_label -= of_label > 0 ? 1 : 0;
     }
-    return rows;
+    drawn.insert(drawn.end(), others.begin(), others.begin() + static_cast<std::ptrdiff_t>(limit - drawn.size()));
+    std::sort(drawn.begin(), drawn.end());
+    return drawn;
+}
+
+/// Returns the labeled items of a mesh, or a random part of them, whose labels keep the weights that all items give
+/// them.
+ChosenRows choose_rows_of(const BoostingItems& mesh, std::size_t limit, std::size_t classes, const Random& random) {
+    ChosenRows chosen;
+    std::vector<double> all(classes, 0), kept(classes, 0);
+    for (std::uint32_t i = 0; i < mesh.label.size(); ++i)
+        if (mesh.label[i] >= 0) {
+            chosen.row.push_back(i);
+            all[static_cast<std::size_t>(mesh.label[i])] += static_cast<double>(mesh.weight[i]);
+        }
+    const bool draws = limit > 0 && chosen.row.size() > limit;
+    if (draws) chosen.row = draw_rows(mesh, std::move(chosen.row), limit, classes, random);
+    for (const std::uint32_t row : chosen.row)
+        kept[static_cast<std::size_t>(mesh.label[row])] += static_cast<double>(mesh.weight[row]);
+    chosen.weight.reserve(chosen.row.size());
+    for (const std::uint32_t row : chosen.row) {
+        const auto label = static_cast<std::size_t>(mesh.label[row]);
+        const double scale = draws && kept[label] > 0 ? all[label] / kept[label] : 1;
+        chosen.weight.push_back(static_cast<float>(scale * static_cast<double>(mesh.weight[row])));
+    }
+    return chosen;
 }
 
 TrainingRows collect_training_rows(std::span<const BoostingItems> meshes, const FoldBoostingOptions& options) {
-    std::vector<std::vector<std::uint32_t>> rows;
+    std::vector<ChosenRows> rows;
     std::vector<std::size_t> offset{0};
     const Random random(options.seed);
     for (std::size_t m = 0; m < meshes.size(); ++m) {
-        rows.push_back(chosen_rows(meshes[m], options.rows_per_mesh, random.fork(m)));
-        offset.push_back(offset.back() + rows.back().size());
+        rows.push_back(choose_rows_of(meshes[m], options.rows_per_mesh, options.classes, random.fork(m)));
+        offset.push_back(offset.back() + rows.back().row.size());
     }
     TrainingRows pool;
     pool.features.rows = offset.back();
@@ -62,15 +95,16 @@ TrainingRows collect_training_rows(std::span<const BoostingItems> meshes, const 
         float* out = pool.features.column(f).data();
         for (std::size_t m = 0; m < meshes.size(); ++m) {
             const std::span<const float> column = meshes[m].features->column(f);
-            for (const std::uint32_t row : rows[m]) *out++ = column[row];
+            for (const std::uint32_t row : rows[m].row) *out++ = column[row];
         }
     });
-    for (std::size_t m = 0; m < meshes.size(); ++m)
-        for (const std::uint32_t row : rows[m]) {
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+        for (const std::uint32_t row : rows[m].row) {
             pool.label.push_back(meshes[m].label[row]);
-            pool.weight.push_back(meshes[m].weight[row]);
             pool.fold.push_back(meshes[m].fold[row]);
         }
+        pool.weight.insert(pool.weight.end(), rows[m].weight.begin(), rows[m].weight.end());
+    }
     return pool;
 }
 

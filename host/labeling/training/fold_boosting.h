@@ -28,11 +28,13 @@ struct FoldBoostingOptions {
     /// The number of rounds is the one with the lowest held-out loss; the search stops this many rounds after it. 0
     /// keeps all rounds.
     std::size_t patience = 50;
-    std::size_t rows_per_mesh = 0;  ///< items drawn at random per mesh; 0 = all
-    double feature_fraction = 1;    ///< share of the features that are tried in each round
-    double shrinkage = 1;           ///< see BoostOptions
-    bool binary = false;            ///< GentleBoost for two classes instead of JointBoost
-    bool linear = false;            ///< combine the stumps with a linear classifier if that lowers the held-out loss
+    /// Items drawn at random per mesh, half of them evenly from its labels; 0 = all. Weights make up for what is not
+    /// drawn.
+    std::size_t rows_per_mesh = 0;
+    double feature_fraction = 1;  ///< share of the features that are tried in each round
+    double shrinkage = 1;         ///< see BoostOptions
+    bool binary = false;          ///< GentleBoost for two classes instead of JointBoost
+    bool linear = false;          ///< combine the stumps with a linear classifier if that lowers the held-out loss
     std::uint64_t seed = 1;
 };
 

@@ -29,11 +29,13 @@ OrientationUse orientation_use(const std::string& name);
 
 struct TrainOptions {
     std::uint64_t seed = 1;
-    std::size_t rounds = 300;        ///< stumps per classifier (thesis Sec. 3.3.1); a maximum for boundary classifiers
-    std::size_t patience = 50;       ///< boundary classifiers end after this many rounds without a lower held-out loss
-    std::size_t max_stages = 3;      ///< maximum classifiers of the unary cascade (thesis Sec. 3.3.1: usually 3)
-    std::size_t bins = 128;          ///< quantization bins of each feature
-    std::size_t rows_per_mesh = 0;   ///< faces (and edges) of each mesh used for boosting, drawn at random; 0 = all
+    std::size_t rounds = 300;    ///< stumps per classifier (thesis Sec. 3.3.1); a maximum for boundary classifiers
+    std::size_t patience = 50;   ///< boundary classifiers end after this many rounds without a lower held-out loss
+    std::size_t max_stages = 3;  ///< maximum classifiers of the unary cascade (thesis Sec. 3.3.1: usually 3)
+    std::size_t bins = 128;      ///< quantization bins of each feature
+    /// Faces, and edges, of each mesh used for boosting, drawn at random, but small labels in full; 0 = all.
+    /// Neighboring faces are alike: more hardly tell more.
+    std::size_t rows_per_mesh = 0;
     double feature_fraction = 0.06;  ///< share of the features that are tried in each round, drawn at random
     double shrinkage = 0.5;          ///< factor on each stump's response
     bool linear = true;              ///< combine face classifiers with linear ones if that lowers the held-out loss

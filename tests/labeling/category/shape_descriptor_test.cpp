@@ -82,7 +82,8 @@ TEST(ShapeDescriptor, AFaceCutInTwoIsStillOne) {
 
 TEST(ShapeDescriptor, LabelsDoNotMatter) {
     MeshFeatures labeled = three_faces();
-    for (float& value : labeled.unary.add("context.geodesic.0.leg")) value = 5;
+    for (const char* name : {"orientation.x", "context.geodesic.0.leg"})
+        for (float& value : labeled.unary.add(name)) value = 5;
     EXPECT_EQ(compute_shape_descriptor(labeled).values, compute_shape_descriptor(three_faces()).values);
     EXPECT_EQ(compute_shape_descriptor(labeled).features, three_faces().unary.names);
 }

@@ -40,6 +40,7 @@ void expect_equal(const MeshFeatures& a, const MeshFeatures& b) {
     EXPECT_EQ(a.edge_context.edge, b.edge_context.edge);
     EXPECT_EQ(a.edge_context.bin, b.edge_context.bin);
     EXPECT_EQ(a.face_area, b.face_area);
+    EXPECT_EQ(a.position, b.position);
     EXPECT_EQ(a.edges, b.edges);
     EXPECT_EQ(a.edge_length, b.edge_length);
     EXPECT_EQ(a.dihedral, b.dihedral);

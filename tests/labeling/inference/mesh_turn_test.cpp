@@ -11,6 +11,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/random.h"
+#include "host/labeling/inference/labeler.h"
 
 namespace exemplar {
 namespace {
@@ -116,6 +117,25 @@ TEST(MeshTurn, AMeshThatLiesWellStays) {
         turn_positions(features, Eigen::AngleAxisf(degrees / k_degrees, Eigen::Vector3f::UnitX()).toRotationMatrix());
         set_orientation(features, 1, Eigen::Matrix3f::Identity());
         EXPECT_EQ(likeliest_turn(model, features), Eigen::Matrix3f::Identity());
+    }
+}
+
+TEST(MeshTurn, AMeshThatLiesOtherwiseIsLabeledAsIfItDidNot) {
+    const LabelingModel model = upright_model();
+    MeshFeatures features = sphere_of_faces(600);
+    features.face_area.assign(600, 1);
+    turn_positions(features,
+                   Eigen::AngleAxisf(std::numbers::pi_v<float> / 2, Eigen::Vector3f::UnitX()).toRotationMatrix());
+    CpuStumpScorer scorer;
+    CpuContextHistograms context;
+    MeshFeatures* const mesh = &features;
+    for (int again = 0; again < 2; ++again) {
+        const FaceScores scores = score_faces(model, std::span(&mesh, 1), {scorer, context}).front();
+        EXPECT_GT(scores.turned, 60);
+        std::size_t right = 0;
+        for (std::size_t f = 0; f < 600; ++f)
+            right += (scores.probabilities[2 * f + 1] > 0.5F) == (features.unary.column(0)[f] > 0) ? 1 : 0;
+        EXPECT_GT(right, 570U);
     }
 }
 

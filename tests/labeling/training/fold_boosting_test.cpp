@@ -119,6 +119,22 @@ TEST(FoldBoosting, ContextShowsALabelOfOneFoldOnlyWithLessConfidence) {
     EXPECT_LT(elsewhere, 0.05F) << "known, and not there";
 }
 
+TEST(FoldBoosting, FewRowsOfEachMeshStillShowItsSmallLabels) {
+    Meshes meshes = make_meshes(3, 2000, 0.2);
+    for (Data& mesh : meshes.data)
+        for (std::size_t i = 0; i < 2000; ++i) {
+            mesh.labels[i] = i < 6 ? 1 : 0;  // few of 40 random rows would have label 1
+            mesh.features.column(0)[i] = i < 6 ? 50.0F : 0.0F;
+        }
+    CpuStumpScorer scorer;
+    FoldBoostingOptions options = options_for(3);
+    options.patience = 0, options.rounds = 30, options.rows_per_mesh = 40;
+    const FoldBoostingResult result = boost_with_folds(meshes.items, options, scorer, [] {});
+    for (const std::vector<float>& p : result.out_of_fold)
+        for (std::size_t i = 0; i < 2000; ++i) ASSERT_GT(p[2 * i + (i < 6 ? 1 : 0)], 0.5F) << i;
+    EXPECT_LT(result.loss, 0.1);
+}
+
 TEST(FoldBoosting, WithoutAnythingHeldOutItStillTrains) {
     const Meshes meshes = make_meshes(1, 60, 1.0);
     CpuStumpScorer scorer;

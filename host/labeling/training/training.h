@@ -35,7 +35,7 @@ struct TrainOptions {
     std::size_t bins = 128;      ///< quantization bins of each feature
     /// Faces, and edges, of each mesh used for boosting, drawn at random, but small labels in full; 0 = all.
     /// Neighboring faces are alike: more hardly tell more.
-    std::size_t rows_per_mesh = 0;
+    std::size_t rows_per_mesh = 4000;
     double feature_fraction = 0.06;  ///< share of the features that are tried in each round, drawn at random
     double shrinkage = 0.5;          ///< factor on each stump's response
     bool linear = true;              ///< combine face classifiers with linear ones if that lowers the held-out loss

@@ -376,6 +376,7 @@ TEST(CategoryModelFile, InconsistentContentIsRefused) {
         {"\"kind1\"", "\"unknown\""},
         {",\"kind1\"", ""},
         {"\"f3\"", "\"f3\",\"f3b\""},
+        {"\"f3\"", "\"orientation.x\""},
         {"\"samples\":", "\"samples\":-"},
         {"\"samples\":1000", "\"samples\":0"},
         {"\"sharpness\":", "\"sharpness\":-"},

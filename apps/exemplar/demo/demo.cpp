@@ -73,6 +73,7 @@ void run_demo(const DemoOptions& options) {
     TrainOptions train;
     train.seed = options.seed;
     train.rounds = 120, train.patience = 20, train.rows_per_mesh = 1500;  // a demonstration, in minutes
+    train.orientation = OrientationUse::never;                            // judging it takes one more stage
     DemoLines lines = make_demo_lines(options.out / "lines", options.seed);
     EvaluationRun run(backend, train, options.out / "features", options.out,
                       {.quiet = true, .drawings = {std::move(lines.drawing)}});

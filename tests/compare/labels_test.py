@@ -45,22 +45,22 @@ class GaussianBayesTest(unittest.TestCase):
         x = numpy.stack([common, numpy.where(label == 1, common, -common) + 0.5 * own], axis=1)
         right = {}
         for smoothing in (0.1, 1):
-            bayes = labels.GaussianBayes(smoothing, 0).fit(x[:2000], label[:2000], numpy.ones(2000))
+            bayes = learners.GaussianBayes(smoothing, 0).fit(x[:2000], label[:2000], numpy.ones(2000))
             right[smoothing] = numpy.mean(bayes.decision_function(x[2000:]).argmax(axis=1) == label[2000:])
         self.assertGreater(right[0.1], 0.8)
         self.assertLess(right[1], 0.6)
 
     def test_scores_are_those_of_the_formula(self):
         x, label = numpy.array([[0.0], [2], [10], [14]]), numpy.array([0, 0, 1, 1])
-        bayes = labels.GaussianBayes(0, 1).fit(x, label, numpy.ones(4))  # means 1 and 12, variances 1 and 4, even priors
+        bayes = learners.GaussianBayes(0, 1).fit(x, label, numpy.ones(4))  # means 1 and 12, variances 1 and 4, even priors
         score = bayes.decision_function(numpy.array([[3.0]]))[0]
         self.assertAlmostEqual(numpy.log(0.5) - 2, score[0], 3)
         self.assertAlmostEqual(numpy.log(0.5) - numpy.log(2) - 81 / 8, score[1], 3)
 
     def test_faces_of_more_weight_count_more(self):
         x, label = numpy.array([[0.0], [1], [5], [6], [7]]), numpy.array([0, 0, 1, 1, 1])
-        once = labels.GaussianBayes(0.5, 2).fit(x[[0, 0, 0, 1, 2, 3, 4]], label[[0, 0, 0, 1, 2, 3, 4]], numpy.ones(7))
-        weighted = labels.GaussianBayes(0.5, 2 * 5 / 7).fit(x, label, numpy.array([3.0, 1, 1, 1, 1]))
+        once = learners.GaussianBayes(0.5, 2).fit(x[[0, 0, 0, 1, 2, 3, 4]], label[[0, 0, 0, 1, 2, 3, 4]], numpy.ones(7))
+        weighted = learners.GaussianBayes(0.5, 2 * 5 / 7).fit(x, label, numpy.array([3.0, 1, 1, 1, 1]))
         place = numpy.array([[2.0], [4]])
         self.assertTrue(numpy.allclose(once.decision_function(place), weighted.decision_function(place), atol=1e-6))
 
@@ -124,6 +124,7 @@ class CutTest(unittest.TestCase):
 if __name__ == "__main__":
     programs.require_compare()
     import labels  # before numpy: it sets the number of threads
+    import learners
     import numpy
     warnings.simplefilter("ignore", labels.ConvergenceWarning)
     unittest.main()

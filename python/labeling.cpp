@@ -93,7 +93,7 @@ LabelingModel train_labeling(const std::vector<MeshPointer>& meshes, const Train
 // One parameter for each keyword of the Python function. NOLINTNEXTLINE(readability-function-size)
 ModelPointer train_model(const std::vector<MeshPointer>& meshes, std::uint64_t seed, std::int64_t rounds,
                          std::int64_t patience, std::int64_t stages, std::int64_t bins, std::int64_t rows,
-                         double feature_fraction, double shrinkage, bool linear, std::int64_t samples,
+                         double feature_fraction, double shrinkage, bool linear, bool boundary, std::int64_t samples,
                          const std::string& orientation, const fs::path& cache, const std::string& device) {
     constexpr std::int64_t k_any = std::numeric_limits<std::int64_t>::max();
     require_range("rounds", rounds, std::int64_t{1}, std::int64_t{100'000});
@@ -114,6 +114,7 @@ ModelPointer train_model(const std::vector<MeshPointer>& meshes, std::uint64_t s
                                .feature_fraction = feature_fraction,
                                .shrinkage = shrinkage,
                                .linear = linear,
+                               .boundary = boundary,
                                .orientation = orientation_use(orientation),
                                .features = {static_cast<std::size_t>(samples)}};
     return std::make_shared<LabelingModel>(long_result([&] { return train_labeling(meshes, options, cache, device); }));
@@ -211,8 +212,9 @@ void add_labeling(py::module_& module) {
         py::arg("rounds") = k_usual.rounds, py::arg("patience") = k_usual.patience,
         py::arg("stages") = k_usual.max_stages, py::arg("bins") = k_usual.bins, py::arg("rows") = k_usual.rows_per_mesh,
         py::arg("feature_fraction") = k_usual.feature_fraction, py::arg("shrinkage") = k_usual.shrinkage,
-        py::arg("linear") = k_usual.linear, py::arg("samples") = k_usual.features.samples,
-        py::arg("orientation") = "auto", py::arg("cache") = "", py::arg("device") = "",
+        py::arg("linear") = k_usual.linear, py::arg("boundary") = k_usual.boundary,
+        py::arg("samples") = k_usual.features.samples, py::arg("orientation") = "auto", py::arg("cache") = "",
+        py::arg("device") = "",
         "Learns to label from labeled meshes (see Mesh.with_labels() and read_labeled()): labels of equal names are\n"
         "one label, and faces with -1 teach nothing. The options are those of `exemplar label train`: `rounds` of\n"
         "boosting for each classifier (1 to 100,000), `patience` (rounds without gain that end boundary classifiers),\n"
@@ -220,7 +222,8 @@ void add_labeling(py::module_& module) {
         "on; 0: all), `feature_fraction` (share of the features that a round looks at, 0.001 to 1), `shrinkage` of "
         "each\n"
         "response (0.01 to 1), `linear` (whether stumps are pooled with a linear classifier where that is better on\n"
-        "held-out meshes), `samples` as in features(), `orientation` (\"yes\", \"no\", or \"auto\": whether faces are\n"
+        "held-out meshes), `boundary` (whether it learns where parts end), `samples` as in features(), `orientation` "
+        "(\"yes\", \"no\", or \"auto\": whether faces are\n"
         "also known by where they are; auto if held-out meshes tell that all lie alike). Equal meshes and seeds give\n"
         "equal models.\n"
         "`cache` and `device` as in LabelingModel.label(). Raises UsageError if a mesh has no labels, DataError if\n"

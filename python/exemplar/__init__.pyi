@@ -187,6 +187,7 @@ def train_labeling(
     feature_fraction: float = ...,
     shrinkage: float = ...,
     linear: bool = ...,
+    boundary: bool = ...,
     samples: int = ...,
     orientation: str = ...,
     cache: _Path = ...,

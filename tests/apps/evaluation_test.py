@@ -129,6 +129,7 @@ class Evaluate(WithModel):
             right, total = self.right_area(entry["path"], found, rated=["body"])
             self.assertAlmostEqual(entry["recognition_rate"], right / total, places=4)
             self.assertAlmostEqual(entry["segment_weighted_accuracy"], right / total, places=4)
+            self.assertGreater(entry["without_cut"], 0.5)
             grip_as_handle = entry["confusion"][2 * 3 + 1]
             self.assertGreater(grip_as_handle, 0.5 * sum(entry["confusion"][6:9]))
         self.assertTrue((self.folder / "other" / "index.html").exists())

@@ -64,6 +64,13 @@ class Train(WithModel):
             self.assertEqual(stage["validation_loss"], stage["stumps_loss"])
         self.call("label", "apply", "alone", self.cup, "--out", "by_stumps")
 
+    def test_borders_may_be_left_to_length_and_angle(self):
+        self.assertIn(b"pairwise.0.", self.train("cups", "with_boundary"))
+        self.assertNotIn(b"pairwise.0.", self.train("cups", "without_boundary", "--no-boundary", "--json", "plain.json"))
+        stages = [stage["classifier"] for stage in self.json("plain.json")["classifiers"]]
+        self.assertTrue(all(stage.startswith("unary") for stage in stages), stages)
+        self.call("label", "apply", "without_boundary", self.cup, "--out", "plain")
+
     def test_one_mesh_is_enough_and_one_label_is_not(self):
         self.train(self.cup, "one")
         single = self.folder / "single"

@@ -115,7 +115,7 @@ ReportData report_group(const Json& category) {
     add_features(splits[0], group);
     add_curves(splits[0]["training"], group);
     add_timings(splits[0], group);
-    for (const Rate& rate : evaluation_rates().first(3))
+    for (const Rate& rate : evaluation_rates().first(4))
         if (const double value = rate_of(category, rate.key); !std::isnan(value))
             group.summary.emplace_back(rate.title, fmt::format("{:.1f} %", 100 * value));
     if (splits[0].contains("learning_curve"))

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 /// Version of the labeling and of the scores; scores of another version are not reused.
-constexpr int k_score_version = 3;
+constexpr int k_score_version = 4;
 
 /// File beside NAME.json of every test mesh; no mesh has this name.
 constexpr const char* k_training_report = "model.training.json";
@@ -223,23 +223,22 @@ Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, 
 
     const Stopwatch scoring;
     const std::vector<float> areas = face_areas(item.mesh);
-    MeshScore score = score_labeling(areas, item.label, labeling.label, corpus.names.size());
-    if (task.other_category) {  // all labels are compared, but only those that both have are rated
-        std::vector<std::int32_t> rated = item.label;
+    std::vector<std::int32_t> rated = item.label;
+    if (task.other_category)  // all labels are compared, but only those that both have are rated
         for (std::int32_t& label : rated)
             if (label >= static_cast<std::int32_t>(model.class_count())) label = -1;
-        const MeshScore shared = score_labeling(areas, rated, labeling.label, corpus.names.size());
-        score.recognition_rate = shared.recognition_rate;
-        score.segment_weighted_accuracy = shared.segment_weighted_accuracy;
-    }
-    Json json =
-        describe_scores(score, score_segmentation(item.mesh, labeling.label, human_segmentations(task.humans, item)));
+    const auto score = [&](const std::vector<std::int32_t>& truth, const std::vector<std::int32_t>& predicted) {
+        return score_labeling(areas, truth, predicted, corpus.names.size());
+    };
+    Json json = describe_scores(score(rated, labeling.label),
+                                score(rated, most_probable_labels(labeling.probabilities, model.class_count())),
+                                score_segmentation(item.mesh, labeling.label, human_segmentations(task.humans, item)));
     seconds["scores"] = scoring.wall(), seconds["all"] = watch.wall();
     json.update({{"key", mesh_key},
                  {"mesh", item.name},
                  {"path", mesh.string()},
                  {"names", corpus.names},
-                 {"confusion", score.confusion},
+                 {"confusion", score(item.label, labeling.label).confusion},
                  {"seconds", seconds}});
     write_json(scores, json);
     return json;
@@ -292,7 +291,7 @@ Json EvaluationRun::evaluate(const std::vector<EvaluationTask>& tasks, const std
     }
     for (Json& category : categories) summarize_category(category);
     progress.finish();
-    Json report{{"protocol", protocol}, {"device", backend_.device_name()}};
+    Json report{{"protocol", protocol}, {"device", backend_.device_name()}, {"options", describe_options(train_)}};
     report.update(mean_rates(categories));
     report["features"] = sum_chosen_features(models);
     report["categories"] = std::move(categories);

@@ -27,8 +27,8 @@ std::span<const Rate> evaluation_rates();
 double rate_of(const nlohmann::json& json, const char* key);
 /// Returns a rate as JSON; null for NaN.
 nlohmann::json rate_json(double rate);
-/// The rates of a mesh.
-nlohmann::json describe_scores(const MeshScore& labels, const SegmentationErrors& segments);
+/// The rates of a mesh, with those of the classifiers alone (`uncut`).
+nlohmann::json describe_scores(const MeshScore& labels, const MeshScore& uncut, const SegmentationErrors& segments);
 /// Returns the mean of each rate over the items that have it.
 nlohmann::json mean_rates(const nlohmann::json& items);
 

@@ -120,15 +120,6 @@ double log_loss(const MeshFeatures& features, std::span<const std::int32_t> trut
     return area > 0 ? sum / area : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::vector<std::int32_t> most_probable_labels(std::span<const float> probabilities, std::size_t classes) {
-    std::vector<std::int32_t> labels;
-    for (std::size_t begin = 0; begin < probabilities.size(); begin += classes) {
-        const auto face = probabilities.subspan(begin, classes);
-        labels.push_back(static_cast<std::int32_t>(std::ranges::max_element(face) - face.begin()));
-    }
-    return labels;
-}
-
 /// Labels one held-out mesh and returns its rates.
 Json judge_held_out(const LabelingModel& model, const LabeledMesh& mesh, const std::vector<std::string>& names,
                     MeshFeatures& features, DeviceBackend& backend) {

@@ -93,6 +93,9 @@ void add_training_options(Command& command, TrainOptions& options, std::filesyst
     command.add_flag_callback(
         "--no-linear", [&options] { options.linear = false; },
         "boosted stumps alone, not pooled with linear classifiers where that is better on held-out meshes");
+    command.add_flag_callback(
+        "--no-boundary", [&options] { options.boundary = false; },
+        "no classifier of where parts end: borders cost by length and angle alone");
     command
         .add_option("--samples", options.features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()

@@ -61,6 +61,7 @@ nlohmann::json describe_options(const TrainOptions& options) {
             {"feature_fraction", options.feature_fraction},
             {"shrinkage", options.shrinkage},
             {"linear", options.linear},
+            {"boundary", options.boundary},
             {"samples", options.features.samples},
             {"orientation", orientation_uses()[static_cast<std::size_t>(options.orientation)]},
             {"features", k_feature_version},

@@ -57,6 +57,15 @@ MeshScore score_labeling(std::span<const float> face_area, std::span<const std::
     return score;
 }
 
+std::vector<std::int32_t> most_probable_labels(std::span<const float> probabilities, std::size_t classes) {
+    std::vector<std::int32_t> labels;
+    for (std::size_t begin = 0; begin < probabilities.size(); begin += classes) {
+        const auto face = probabilities.subspan(begin, classes);
+        labels.push_back(static_cast<std::int32_t>(std::ranges::max_element(face) - face.begin()));
+    }
+    return labels;
+}
+
 SegmentationErrors score_segmentation(const TriangleMesh& mesh, std::span<const std::int32_t> predicted,
                                       std::span<const std::vector<std::int32_t>> human_segmentations) {
     if (human_segmentations.empty()) return {};

@@ -284,13 +284,13 @@ EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<Mes
 }
 
 /// Trains the boundary classifiers; returns the out-of-fold boundary probability per edge. If the parts of all meshes
-/// are separate pieces, there is nothing to learn: the model gets no classifier, and all probabilities are
+/// are separate pieces, or the options ask for none, the model gets no classifier, and all probabilities are
 /// k_unknown_boundary_probability.
 PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features, const Folds& folds,
                        const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
                        TrainReport& report) {
     const EdgeTargets targets = make_edge_targets(corpus, features, folds);
-    if (!targets.both) {
+    if (!targets.both || !options.boundary) {
         PerMesh even;
         for (const MeshFeatures& mesh : features) even.emplace_back(mesh.edges.size(), k_unknown_boundary_probability);
         return even;

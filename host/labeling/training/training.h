@@ -39,6 +39,7 @@ struct TrainOptions {
     double feature_fraction = 0.06;  ///< share of the features that are tried in each round, drawn at random
     double shrinkage = 0.5;          ///< factor on each stump's response
     bool linear = true;              ///< combine face classifiers with linear ones if that lowers the held-out loss
+    bool boundary = true;            ///< learn where parts end; otherwise any edge may be a border (thesis Fig. 3.2)
     OrientationUse orientation = OrientationUse::automatic;
     FeatureOptions features;
 };

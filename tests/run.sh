@@ -9,7 +9,7 @@
 #   --card         runs the tests of kernels a second time as on a graphics card: device memory that the host does not see, the
 #                  kernels for cards, none replaced by the host, fresh memory full of NaN
 #   --package      also builds the Debian packages and installs them into a Debian of their own (as root)
-#   --compare      also installs scikit-learn and XGBoost and compares what they learn
+#   --compare      also installs scikit-learn, XGBoost and PyTorch and compares what they learn
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source apps/setup.sh
@@ -34,7 +34,7 @@ while true; do
             packages+=(debootstrap lintian)
             export EXEMPLAR_PACKAGES=$PWD/build-package/packages ;;
         --compare)
-            packages+=(python3-sklearn python3-xgboost python3-matplotlib libopenblas0-pthread)
+            packages+=(python3-sklearn python3-xgboost python3-torch python3-matplotlib libopenblas0-pthread)
             export EXEMPLAR_COMPARE=1 ;;
         *) break ;;
     esac

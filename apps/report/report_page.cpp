@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t k_max_labels = 255;
 constexpr std::uint8_t k_unlabeled = 255;
 /// Rounding may leave a probability this far outside [0, 1].
-constexpr float k_confidence_slack = 1e-3f;
+constexpr float k_probability_slack = 1e-3f;
 
 // ---- checks
 
@@ -53,6 +53,13 @@ void check_geometry(const TriangleMesh& mesh, const std::string& where) {
         }
 }
 
+void check_shares(const std::vector<float>& values, const std::string& where, const char* what) {
+    for (std::size_t f = 0; f < values.size(); ++f)
+        if (!(values[f] >= -k_probability_slack && values[f] <= 1 + k_probability_slack))
+            throw UsageError(
+                fmt::format("report page: {}: {} of face {} is {}, not in [0, 1]", where, what, f, values[f]));
+}
+
 void check_mesh(const ReportMesh& item, std::size_t classes) {
     const std::string where = fmt::format("mesh '{}'", item.name);
     if (!item.mesh) throw UsageError(fmt::format("report page: {}: has no triangles attached (null)", where));
@@ -60,13 +67,13 @@ void check_mesh(const ReportMesh& item, std::size_t classes) {
     check_count(item.predicted.size(), faces, where, "predicted labels");
     if (!item.truth.empty()) check_count(item.truth.size(), faces, where, "true labels");
     check_count(item.confidence.size(), faces, where, "confidences");
+    if (!item.entropy.empty()) check_count(item.entropy.size(), faces, where, "entropies");
+    if (!item.border.empty()) check_count(item.border.size(), faces, where, "borders");
+    check_shares(item.confidence, where, "confidence");
+    check_shares(item.entropy, where, "entropy");
+    check_shares(item.border, where, "border");
     check_labels(item.predicted, 0, classes, where, "predicted");
     check_labels(item.truth, -1, classes, where, "true");
-    for (std::size_t f = 0; f < faces; ++f) {
-        const float c = item.confidence[f];
-        if (!(c >= -k_confidence_slack && c <= 1 + k_confidence_slack))
-            throw UsageError(fmt::format("report page: {}: confidence of face {} is {}, not in [0, 1]", where, f, c));
-    }
     check_geometry(*item.mesh, where);
 }
 
@@ -98,7 +105,8 @@ void check_group(const ReportData& group) {
 // ---- packing
 
 /// Bytes of one mesh in the order the page reads them: positions (3 x u16 each), indices (3 x u16 or u32 each),
-/// predicted labels (u8), true labels (u8, 255 = unlabeled; left out if unknown), confidences (u8). Little-endian.
+/// predicted labels (u8), true labels (u8, 255 = unlabeled; left out if unknown), confidences, entropies and borders
+/// (u8 each, the last two left out if unknown). Little-endian.
 struct PackedMesh {
     std::string bytes;
     Vec3d origin = Vec3d::Zero();
@@ -134,7 +142,7 @@ void pack_positions(const TriangleMesh& mesh, PackedMesh& packed) {
 PackedMesh pack_mesh(const ReportMesh& item) {
     PackedMesh packed;
     const TriangleMesh& mesh = *item.mesh;
-    packed.bytes.reserve(6 * mesh.vertex_count() + 15 * mesh.face_count());
+    packed.bytes.reserve(6 * mesh.vertex_count() + 17 * mesh.face_count());
     pack_positions(mesh, packed);
     const bool wide = mesh.vertex_count() > 65536;
     for (const Face& face : mesh.faces)
@@ -147,8 +155,9 @@ PackedMesh pack_mesh(const ReportMesh& item) {
     for (const std::int32_t label : item.predicted) packed.bytes.push_back(static_cast<char>(label));
     for (const std::int32_t label : item.truth)
         packed.bytes.push_back(static_cast<char>(label < 0 ? k_unlabeled : static_cast<std::uint8_t>(label)));
-    for (const float confidence : item.confidence)
-        packed.bytes.push_back(static_cast<char>(std::lround(255 * std::clamp(confidence, 0.0f, 1.0f))));
+    for (const std::vector<float>* values : {&item.confidence, &item.entropy, &item.border})
+        for (const float value : *values)
+            packed.bytes.push_back(static_cast<char>(std::lround(255 * std::clamp(value, 0.0f, 1.0f))));
     return packed;
 }
 
@@ -169,6 +178,8 @@ Json describe_mesh(const ReportMesh& item, const PackedMesh& packed) {
             {"origin", triple(packed.origin)},
             {"step", triple(packed.step)},
             {"truth", !item.truth.empty()},
+            {"hasEntropy", !item.entropy.empty()},
+            {"hasBorder", !item.border.empty()},
             {"unlabeled", std::ranges::find(item.truth, -1) != item.truth.end()},
             {"rate", number_or_null(item.recognition_rate)}};
 }

@@ -56,7 +56,9 @@ struct ReportMesh {
     std::vector<std::int32_t> predicted;  ///< index into ReportData::label_names
     std::vector<std::int32_t> truth;      ///< the same, or -1 where unlabeled; empty if there is no ground truth
     std::vector<float> confidence;        ///< probability of the predicted label, in [0, 1]
-    double recognition_rate = 0;          ///< share of the area labeled right, in [0, 1]; NaN if unknown
+    std::vector<float> entropy;   ///< of the labels' probabilities, divided by log C, in [0, 1]; empty if unknown
+    std::vector<float> border;    ///< probability that a part ends at the face, in [0, 1]; empty if unknown
+    double recognition_rate = 0;  ///< share of the area labeled right, in [0, 1]; NaN if unknown
 };
 
 /// A table of texts, shown below all others; columns of numbers are aligned right.
@@ -97,11 +99,11 @@ struct ReportDrawing {
 };
 
 /// Writes one self-contained HTML file on the groups: a table that compares them, turnable views of labeled meshes
-/// (predicted labels, ground truth, errors, confidence; the first three also side by side), confusion, scores,
-/// curves, features and timings. It opens from file:// in any browser with WebGL; without WebGL the tables remain.
-/// Positions are rounded to 1 / 65535 of the mesh's bounding box, confidences to 1 / 255. F triangles and V vertices
-/// cost (6 V + 9 F) * 4 / 3 bytes; 15 F instead of 9 F beyond 65536 vertices. Written atomically; equal arguments
-/// give equal bytes.
+/// (predicted labels, ground truth, errors, confidence, entropy, borders; the first three also side by side),
+/// confusion, scores, curves, features and timings. It opens from file:// in any browser with WebGL; without WebGL the
+/// tables remain. Positions are rounded to 1 / 65535 of the mesh's bounding box, confidences to 1 / 255. F triangles
+/// and V vertices cost (6 V + 11 F) * 4 / 3 bytes; 17 F instead of 11 F beyond 65536 vertices. Written atomically;
+/// equal arguments give equal bytes.
 ///
 /// Throws UsageError naming the mesh or table if a label index or confidence is out of range, a size does not match,
 /// a coordinate is not finite, the rounds of a curve do not ascend, or there is no group; DataError if it cannot

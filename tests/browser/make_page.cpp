@@ -36,6 +36,8 @@ ReportMesh with_invented_errors(const std::string& name, const SynthShape& shape
         right += !is_wrong;
         item.predicted.push_back(is_wrong ? (item.truth[f] + 1) % classes : item.truth[f]);
         item.confidence.push_back(std::clamp(from_middle, 0.0f, 1.0f));
+        item.entropy.push_back(1 - item.confidence.back() * item.confidence.back());
+        item.border.push_back(f % 7 == 0 ? 1.0F : 0.0F);
     }
     item.recognition_rate = static_cast<double>(right) / static_cast<double>(shape.mesh.face_count());
     return item;

@@ -184,7 +184,7 @@ class Drawn(PageTest):
 
     def test_every_mode_shows_something_else(self):
         seen = []
-        for mode in ("predicted", "truth", "errors", "confidence"):
+        for mode in ("predicted", "truth", "errors", "confidence", "entropy", "border"):
             self.browser.script(f"document.querySelector('#modes input[value={mode}]').click()")
             self.wait_for_meshes(self.FIRST)
             seen.append(self.browser.screenshot(self.browser.find(self.FIRST)))

@@ -188,6 +188,8 @@ TEST(ReportPage, MeshBlocksDecodeToTheMesh) {
     ReportMesh& item = group.meshes[0];
     item.truth[4] = -1;
     item.confidence[0] = 1.0f + 1e-6f;
+    item.entropy.assign(item.confidence.rbegin(), item.confidence.rend());
+    item.border.assign(item.confidence.size(), 0.25F);
     const std::string page = written(page_path("decode"), "Report", std::vector{group});
     const nlohmann::json description = report_json(page)["groups"][0]["meshes"][0];
     EXPECT_EQ(description["vertices"], mesh.vertex_count());
@@ -202,7 +204,8 @@ TEST(ReportPage, MeshBlocksDecodeToTheMesh) {
     expect_faces(block, mesh, 2);
     for (const std::int32_t label : item.predicted) ASSERT_EQ(block.take(1), label);
     for (const std::int32_t label : item.truth) ASSERT_EQ(block.take(1), label < 0 ? 255 : label);
-    for (const float confidence : item.confidence) ASSERT_NEAR(block.take(1) / 255.0, confidence, 0.5001 / 255);
+    for (const std::vector<float>* values : {&item.confidence, &item.entropy, &item.border})
+        for (const float value : *values) ASSERT_NEAR(block.take(1) / 255.0, value, 0.5001 / 255);
     EXPECT_EQ(block.at, block.bytes.size());
 }
 
@@ -340,6 +343,10 @@ TEST(ReportPage, RefusesWhatDoesNotFit) {
     expect_refused("0 confidences", [](Groups& g, TriangleMesh&) { g[0].meshes[0].confidence.clear(); });
     expect_refused("confidence of face 3", [](Groups& g, TriangleMesh&) { g[0].meshes[0].confidence[3] = 1.5f; });
     expect_refused("confidence of face 3", [](Groups& g, TriangleMesh&) { g[0].meshes[0].confidence[3] = NAN; });
+    expect_refused("1 entropies", [](Groups& g, TriangleMesh&) { g[0].meshes[0].entropy = {0.5F}; });
+    expect_refused("border of face 2", [](Groups& g, TriangleMesh&) {
+        g[0].meshes[0].border.assign(80, -1), g[0].meshes[0].border[0] = g[0].meshes[0].border[1] = 0;
+    });
     expect_refused("null", [](Groups& g, TriangleMesh&) { g[0].meshes[0].mesh = nullptr; });
     expect_refused("label colors", [](Groups& g, TriangleMesh&) { g[0].label_colors.pop_back(); });
     expect_refused("confusion", [](Groups& g, TriangleMesh&) { g[0].confusion.pop_back(); });

@@ -335,6 +335,8 @@ ReportMesh EvaluationRun::report_mesh(const LabelingModel& model, LabeledCorpus&
     result.predicted = std::move(labeling.label);
     result.truth = mesh.label;
     result.confidence = std::move(labeling.confidence);
+    result.entropy = relative_entropy(labeling.probabilities, model.class_count());
+    result.border = std::move(labeling.border);
     return result;
 }
 

@@ -7,9 +7,15 @@ const NEUTRAL = [205, 210, 218];
 const RIGHT = [206, 219, 236];
 const WRONG = [203, 79, 0];
 const UNKNOWN = [146, 150, 158];
-// Confidence from 0 (dark, stands out) to 1 (pale), as stops of [value, red, green, blue].
-const CONFIDENCE = [[0, 72, 14, 72], [.35, 168, 40, 88], [.6, 232, 106, 66], [.8, 249, 190, 108], [1, 231, 238, 240]];
-const MODES = { compare: 'Side by side', predicted: 'Prediction', truth: 'Ground truth', errors: 'Errors', confidence: 'Confidence' };
+// From 0 (dark, stands out) to 1 (pale), as stops of [value, red, green, blue].
+const SHADE = [[0, 72, 14, 72], [.35, 168, 40, 88], [.6, 232, 106, 66], [.8, 249, 190, 108], [1, 231, 238, 240]];
+const MODES = { compare: 'Side by side', predicted: 'Prediction', truth: 'Ground truth', errors: 'Errors', confidence: 'Confidence', entropy: 'Uncertainty', border: 'Borders' };
+// Modes that shade faces by a number from 0 to 1: which number is dark, what both ends mean, and what the number is.
+const SHADES = {
+  confidence: { darkest: 0, dark: 'unsure, 0%', pale: '100%, sure', what: 'Probability of the predicted label' },
+  entropy: { darkest: 1, dark: 'knows nothing, 1', pale: '0, sure', what: 'Entropy of the probabilities of all labels, 1 if they are equal' },
+  border: { darkest: 1, dark: 'border, 100%', pale: '0%', what: 'Probability that a part ends at the face' },
+};
 const COMPARED = ['predicted', 'truth', 'errors'];
 const state = { group: null, mode: 'compare', highlight: -1, linked: false, views: [] };
 
@@ -42,10 +48,10 @@ function duration(seconds) {
   if (seconds < 3600) return `${Math.floor(seconds / 60)} min ${String(Math.round(seconds % 60)).padStart(2, '0')} s`;
   return `${Math.floor(seconds / 3600)} h ${String(Math.floor(seconds / 60) % 60).padStart(2, '0')} min`;
 }
-function confidenceColor(value) {
+function shadeColor(value) {
   let i = 1;
-  while (i < CONFIDENCE.length - 1 && value > CONFIDENCE[i][0]) ++i;
-  const a = CONFIDENCE[i - 1], b = CONFIDENCE[i], t = (value - a[0]) / (b[0] - a[0]);
+  while (i < SHADE.length - 1 && value > SHADE[i][0]) ++i;
+  const a = SHADE[i - 1], b = SHADE[i], t = (value - a[0]) / (b[0] - a[0]);
   return [1, 2, 3].map(c => a[c] + t * (b[c] - a[c]));
 }
 const SVG = $('enlarge-icon').content.firstChild.namespaceURI;

@@ -56,7 +56,8 @@ function showMeshes(group) {
 }
 function showModes(group) {
   const truth = group.meshes.some(mesh => mesh.truth);
-  const available = Object.keys(MODES).filter(mode => truth || mode === 'predicted' || mode === 'confidence');
+  const known = { confidence: true, entropy: group.meshes.some(mesh => mesh.hasEntropy), border: group.meshes.some(mesh => mesh.hasBorder) };
+  const available = Object.keys(MODES).filter(mode => known[mode] ?? (truth || mode === 'predicted'));
   if (!available.includes(state.mode)) state.mode = available[0];
   $('modes').replaceChildren(...available.map(mode => {
     const input = element('input', { type: 'radio', name: 'mode', value: mode, onchange: () => setMode(mode) });
@@ -88,17 +89,18 @@ function labelEntry(label, l) {
 function showLegend() {
   const { mode, group } = state, entries = [];
   const entry = (color, text) => entries.push(element('span', { class: 'entry' }, swatch(css(color)), text));
-  if (mode === 'confidence') {
-    const stops = CONFIDENCE.map(([v, ...rgb]) => `${css(rgb)} ${100 * v}%`).join(', ');
-    entries.push(element('span', { class: 'scale entry' }, 'unsure, 0%', element('i', { style: { background: `linear-gradient(90deg, ${stops})` } }), '100%, sure'),
-                 element('span', { class: 'soft', text: 'Probability of the predicted label' }));
+  const shades = SHADES[mode];
+  if (shades) {
+    const stops = SHADE.map(([v, ...rgb]) => `${css(rgb)} ${100 * v}%`).join(', ');
+    entries.push(element('span', { class: 'scale entry' }, shades.dark, element('i', { style: { background: `linear-gradient(90deg, ${stops})` } }), shades.pale),
+                 element('span', { class: 'soft', text: shades.what }));
   }
   if (mode === 'compare' || mode === 'predicted' || mode === 'truth') entries.push(...group.labels.map(labelEntry));
   if (mode === 'compare' || mode === 'errors') {
     entry(RIGHT, 'right');
     entry(WRONG, 'wrong');
   }
-  if (group.meshes.some(mesh => mesh.unlabeled) && mode !== 'predicted' && mode !== 'confidence') entry(UNKNOWN, 'no ground truth');
+  if (group.meshes.some(mesh => mesh.unlabeled) && mode !== 'predicted' && !shades) entry(UNKNOWN, 'no ground truth');
   if (mode === 'errors') entries.push(element('span', { class: 'soft', text: 'Lines: boundaries of the ground truth' }));
   $('legend').replaceChildren(...entries);
 }

@@ -20,6 +20,8 @@ class Mesh {
     this.predicted = take(this.faces);
     this.trueLabel = this.truth ? take(this.faces) : null;
     this.confidence = take(this.faces);
+    this.entropy = this.hasEntropy ? take(this.faces) : null;
+    this.border = this.hasBorder ? take(this.faces) : null;
     this.normalizePositions(stored);
     this.corner = this.weld(stored);
     this.normal = this.shadingNormals();
@@ -95,10 +97,16 @@ class Mesh {
     return Uint32Array.from(edges);
   }
   isWrong(f) { return this.trueLabel && this.trueLabel[f] !== UNLABELED && this.trueLabel[f] !== this.predicted[f]; }
+  /** The color of a face in a mode of SHADES. */
+  shade(mode, f) {
+    const values = this[mode];
+    if (!values) return UNKNOWN;
+    return shadeColor(SHADES[mode].darkest ? 1 - values[f] / 255 : values[f] / 255);
+  }
   /** The sRGB color of a face in a mode. */
   faceColor(mode, f) {
     const mark = state.highlight;
-    if (mode === 'confidence') return confidenceColor(this.confidence[f] / 255);
+    if (SHADES[mode]) return this.shade(mode, f);
     if (mode === 'errors') {
       const truth = this.trueLabel ? this.trueLabel[f] : UNLABELED;
       if (truth === UNLABELED) return UNKNOWN;

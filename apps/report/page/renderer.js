@@ -170,7 +170,7 @@ class Renderer {
     this.use(this.boundary, view);
     gl.uniform2f(uniform.pixel, 2 / w, 2 / h);
     gl.uniform1f(uniform.width, 1.4 * ratio);
-    gl.uniform4f(uniform.color, .07, .09, .14, view.mode === 'confidence' ? .5 : .85);
+    gl.uniform4f(uniform.color, .07, .09, .14, SHADES[view.mode] ? .5 : .85);
     this.attribute(attribute.here, paint.boundary, 3, gl.FLOAT, false, 28, 0);
     this.attribute(attribute.there, paint.boundary, 3, gl.FLOAT, false, 28, 12);
     this.attribute(attribute.side, paint.boundary, 1, gl.FLOAT, false, 28, 24);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "host/core/errors.h"
@@ -64,6 +65,18 @@ std::vector<std::int32_t> most_probable_labels(std::span<const float> probabilit
         labels.push_back(static_cast<std::int32_t>(std::ranges::max_element(face) - face.begin()));
     }
     return labels;
+}
+
+std::vector<float> relative_entropy(std::span<const float> probabilities, std::size_t classes) {
+    std::vector<float> entropy;
+    entropy.reserve(probabilities.size() / classes);
+    for (std::size_t begin = 0; begin < probabilities.size(); begin += classes) {
+        double sum = 0;
+        for (const float p : probabilities.subspan(begin, classes))
+            if (p > 0) sum -= double{p} * std::log(double{p});
+        entropy.push_back(classes > 1 ? static_cast<float>(std::clamp(sum / std::log(classes), 0.0, 1.0)) : 0);
+    }
+    return entropy;
 }
 
 SegmentationErrors score_segmentation(const TriangleMesh& mesh, std::span<const std::int32_t> predicted,

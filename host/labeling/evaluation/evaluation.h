@@ -35,6 +35,10 @@ MeshScore score_labeling(std::span<const float> face_area, std::span<const std::
 /// Returns the labels that the classifiers alone give, from their probabilities (faces x classes).
 std::vector<std::int32_t> most_probable_labels(std::span<const float> probabilities, std::size_t classes);
 
+/// Returns the entropy of each face's probabilities (faces x classes) divided by log C: 0 for one sure label, 1 if all
+/// are equal (thesis Fig. 3.2c).
+std::vector<float> relative_entropy(std::span<const float> probabilities, std::size_t classes);
+
 /// Compares a labeling, as a segmentation into connected components of equal label, with each of the human
 /// segmentations (one segment per triangle; thesis Sec. 3.4). All NaN without human segmentations.
 SegmentationErrors score_segmentation(const TriangleMesh& mesh, std::span<const std::int32_t> predicted,

@@ -222,6 +222,10 @@ FaceLabeling cut_faces(const LabelingModel& model, const MeshFeatures& features,
     result.confidence.reserve(result.label.size());
     for (std::size_t f = 0; f < result.label.size(); ++f)
         result.confidence.push_back(result.probabilities[f * classes + result.label[f]]);
+    result.border.assign(result.label.size(), 0);
+    for (std::size_t e = 0; e < features.edges.size(); ++e)
+        for (const std::uint32_t f : features.edges[e])
+            result.border[f] = std::max(result.border[f], scores.boundary[e]);
     result.seconds.emplace_back("cut", watch.wall());
     return result;
 }

@@ -58,7 +58,16 @@ TEST(MeshLabeling, LabelsOfASimplifiedMeshComeBackToItsFaces) {
     ASSERT_EQ(labeling.label.size(), unseen.mesh.face_count());
     EXPECT_EQ(labeling.confidence.size(), unseen.mesh.face_count());
     EXPECT_EQ(labeling.probabilities.size(), 2 * unseen.mesh.face_count());
+    EXPECT_EQ(labeling.border.size(), unseen.mesh.face_count());
     EXPECT_EQ(labeling.seconds.front().first, "features");
+    const std::vector<Vec3> centers = face_centers(unseen.mesh);
+    double at_border = 0, elsewhere = 0, near = 0, far = 0;
+    for (std::size_t f = 0; f < labeling.border.size(); ++f) {
+        const bool is_near = std::abs(centers[f].z()) < 0.1F;  // the halves meet at z = 0
+        (is_near ? at_border : elsewhere) += static_cast<double>(labeling.border[f]);
+        (is_near ? near : far) += 1;
+    }
+    EXPECT_GT(at_border / near, 2 * elsewhere / far);
 
     // The same in steps, together with a mesh that is not simplified.
     const TriangleMesh small = shapes::icosphere(2, 1.0F);

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Writes labels of a finer style: a part in three, as some people cut it in the Princeton benchmark (thesis Fig. 3.7).
+
+    docs/results/finer_style.py psb FourLeg torso finer
+    exemplar label evaluate --train finer/train.txt --test finer/test.txt --labels finer --out out/finer
+
+Takes each mesh of the category of which a person's segmentation cuts the part in three: three segments that each lie in the
+part for the most, and each hold an eighth of it. Where several people did so, the one whose smallest segment is largest counts.
+The segments are called front, middle and rear, by their distance from the head; what remains of the part has no label. All
+other labels stay. Half of the meshes, drawn at random, are to train on. Needs NumPy (Debian: python3-numpy)."""
+import argparse
+import pathlib
+import random
+import sys
+
+import numpy
+
+LEAST_SHARE, LEAST_INSIDE = 0.125, 0.6  # of the part, and of the segment's own area
+NAMES = ('front', 'middle', 'rear')
+
+
+def read_off(path):
+    numbers = path.read_text().split()
+    vertices, faces = int(numbers[1]), int(numbers[2])
+    positions = numpy.array(numbers[4:4 + 3 * vertices], float).reshape(-1, 3)
+    corners = positions[numpy.array(numbers[4 + 3 * vertices:4 + 3 * vertices + 4 * faces], int).reshape(-1, 4)[:, 1:]]
+    area = numpy.linalg.norm(numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    return corners.mean(axis=1), area
+
+
+def read_labels(path, faces):
+    """From pairs of lines: a name, then the 1-based numbers of its faces."""
+    labels = numpy.full(faces, '', dtype=object)
+    lines = [line.strip() for line in path.read_text().splitlines() if line.strip()]
+    for name, numbers in zip(lines[::2], lines[1::2]):
+        labels[numpy.array(numbers.split(), int) - 1] = name
+    return labels
+
+
+def pieces_of(segment, in_part, area):
+    """Returns the segments that are pieces of the part, and the smallest one's share of it."""
+    shares = {number: area[in_part & (segment == number)].sum() for number in numpy.unique(segment[in_part])}
+    pieces = [number for number, inside in shares.items()
+              if inside >= LEAST_SHARE * area[in_part].sum() and inside > LEAST_INSIDE * area[segment == number].sum()]
+    return pieces, min((shares[number] for number in pieces), default=0) / area[in_part].sum()
+
+
+def finer(mesh, segmentations, part, head):
+    """Returns the labels of a mesh in the finer style, or None if nobody cut the part in three."""
+    center, area = read_off(mesh)
+    label = read_labels(mesh.with_name(mesh.stem + '_labels.txt'), len(area))
+    in_part, from_head = label == part, label == head
+    best, best_share = None, 0
+    for path in sorted(segmentations.glob('*.seg')):
+        segment = numpy.array(path.read_text().split(), int)
+        pieces, share = pieces_of(segment, in_part, area)
+        if len(pieces) == 3 and share > best_share:
+            best, best_share = [in_part & (segment == number) for number in pieces], share
+    if best is None or not from_head.any():
+        return None
+    middle_of = lambda faces: numpy.average(center[faces], axis=0, weights=area[faces])
+    best.sort(key=lambda faces: numpy.linalg.norm(middle_of(faces) - middle_of(from_head)))
+    label[in_part] = ''
+    for name, faces in zip(NAMES, best):
+        label[faces] = name
+    return label
+
+
+def write_labels(path, label):
+    names = sorted(set(label) - {''})
+    path.write_text(''.join(f'{name}\n{" ".join(map(str, numpy.flatnonzero(label == name) + 1))}\n' for name in names))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('benchmark', type=pathlib.Path, help='folder of the benchmark, with labeled/ and seg/')
+    parser.add_argument('category')
+    parser.add_argument('part', help='label of the part in three')
+    parser.add_argument('out', type=pathlib.Path, help='folder for the labels and the lists of meshes')
+    parser.add_argument('--head', default='head', help='label of the part that the front is next to')
+    options = parser.parse_args()
+    meshes = sorted((options.benchmark / 'labeled' / options.category).glob('*.off'))
+    options.out.mkdir(parents=True, exist_ok=True)
+    found = []
+    for mesh in meshes:
+        label = finer(mesh, options.benchmark / 'seg' / mesh.stem, options.part, options.head)
+        if label is not None:
+            write_labels(options.out / f'{mesh.stem}_labels.txt', label)
+            found.append(mesh)
+    if len(found) < 2:
+        sys.exit(f'{options.benchmark}: nobody cut the {options.part} of {options.category} in three')
+    training = set(random.Random(1).sample(found, len(found) // 2))
+    for name, chosen in (('train', training), ('test', set(found) - training)):
+        (options.out / f'{name}.txt').write_text(''.join(f'{mesh.resolve()}\n' for mesh in sorted(chosen)))
+    print(f'{len(found)} meshes: {" ".join(mesh.stem for mesh in found)}')
+
+
+if __name__ == '__main__':
+    main()

@@ -168,12 +168,11 @@ std::vector<std::int32_t> label_numbers(const std::vector<std::string>& names, R
 /// Adds a mesh to the group, which refers to `shape`.
 void add_mesh(ReportData& group, const ShownShape& shape, const CatalogRun::Labeled& labeled) {
     const std::vector<std::int32_t> number = label_numbers(shape.labels.names, group);
-    ReportMesh mesh{fmt::format("{} ({})", shown_text(labeled.shape.name), percent_of(labeled.record.confidence)),
-                    &shape.mesh,
-                    {},
-                    {},
-                    shape.confidence,
-                    std::nan("")};
+    ReportMesh mesh;
+    mesh.name = fmt::format("{} ({})", shown_text(labeled.shape.name), percent_of(labeled.record.confidence));
+    mesh.mesh = &shape.mesh;
+    mesh.confidence = shape.confidence;
+    mesh.recognition_rate = std::nan("");
     for (const std::int32_t label : shape.labels.label)
         mesh.predicted.push_back(number[static_cast<std::size_t>(label)]);
     if (std::ranges::find(mesh.predicted, -1) == mesh.predicted.end()) group.meshes.push_back(std::move(mesh));

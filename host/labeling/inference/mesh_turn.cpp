@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t k_judged_faces = 200;  // the first samples, which lie as far apart as so many can
 constexpr std::size_t k_turns_at_once = 24;
 constexpr double k_min_gain = 0.05;                         // nats a face; below, the mesh stays as it lies
+constexpr double k_min_agreement = 1e-4;                    // no single face decides
 constexpr std::array<float, 2> k_refinements{20.0F, 8.0F};  // degrees about each axis
 
 using Turns = std::vector<Eigen::Matrix3f>;
@@ -38,7 +39,17 @@ Turns axis_turns() {
     return turns;
 }
 
-/// Says how sure the first stage of a model is of a mesh that is turned in various ways.
+/// The probabilities of a stage, rows x classes.
+std::vector<float> probabilities_of(const LabelingModel& model, const CalibratedStumps& stage,
+                                    const LinearExpert* linear, const FeatureMatrix& rows) {
+    std::vector<float> probabilities(rows.rows * model.class_count());
+    CpuStumpScorer scorer;  // few rows many times: a device would mostly wait
+    scorer.probabilities(stage.stumps, rows, stage.link, stage.scale, probabilities);
+    if (linear) pool(*linear, rows, model.averaged_labels, probabilities);
+    return probabilities;
+}
+
+/// Says how well the first stage of a model fits a mesh that is turned in various ways.
 class TurnJudge {
   public:
     TurnJudge(const LabelingModel& model, const MeshFeatures& features)
@@ -48,21 +59,26 @@ class TurnJudge {
         for (const std::uint32_t face : face_)
             position_.push_back(
                 {features.position[face], features.position[faces_ + face], features.position[2 * faces_ + face]});
-        for (std::size_t f = 0; f < base_; ++f)
-            for (const std::uint32_t face : face_) base_values_.push_back(features.unary.column(f)[face]);
+        base_values_.rows = face_.size();
+        for (std::size_t f = 0; f < base_; ++f) {
+            const std::span<float> column = base_values_.add(features.unary.names[f]);
+            for (std::size_t i = 0; i < face_.size(); ++i) column[i] = features.unary.column(f)[face_[i]];
+        }
+        as_shaped_ = probabilities_of(model, model.unoriented, &model.unoriented_linear, base_values_);
     }
 
-    /// The mean of sum_c P_c log P_c over the judged faces, per turn: 0 where the stage is sure, else less.
-    std::vector<double> certainty(std::span<const Eigen::Matrix3f> turns) {
+    /// Per turn, the mean over the judged faces of sum_c P_c log P_c + log sum_c P_c Q_c: at most 0, which it is where
+    /// the stage (P) is sure and the stage without coordinates (Q) is sure of the same.
+    std::vector<double> fitness(std::span<const Eigen::Matrix3f> turns) {
         std::vector<double> result;
         for (; !turns.empty(); turns = turns.subspan(std::min(turns.size(), k_turns_at_once)))
-            for (const double value : certainty_of_some(turns.first(std::min(turns.size(), k_turns_at_once))))
+            for (const double value : fitness_of_some(turns.first(std::min(turns.size(), k_turns_at_once))))
                 result.push_back(value);
         return result;
     }
 
   private:
-    std::vector<double> certainty_of_some(std::span<const Eigen::Matrix3f> turns) {
+    std::vector<double> fitness_of_some(std::span<const Eigen::Matrix3f> turns) {
         check_interrupt();
         const std::size_t count = face_.size(), classes = model_.class_count();
         FeatureMatrix rows;
@@ -71,41 +87,48 @@ class TurnJudge {
         rows.values.resize(rows.cols() * rows.rows);
         for (std::size_t f = 0; f < base_; ++f)
             for (std::size_t t = 0; t < turns.size(); ++t)
-                std::copy_n(base_values_.begin() + f * count, count, rows.column(f).begin() + t * count);
+                std::ranges::copy(base_values_.column(f),
+                                  rows.column(f).begin() + static_cast<std::ptrdiff_t>(t * count));
         for (std::size_t t = 0; t < turns.size(); ++t)
             for (std::size_t i = 0; i < count; ++i) {
                 const Eigen::Vector3f at = turns[t] * position_[i];
                 for (std::size_t axis = 0; axis < 3; ++axis) rows.column(base_ + axis)[t * count + i] = at[axis];
             }
-        std::vector<float> probabilities(rows.rows * classes);
-        const CalibratedStumps& stage = model_.unary.front();
-        scorer_.probabilities(stage.stumps, rows, stage.link, stage.scale, probabilities);
-        if (!model_.linear.empty()) pool(model_.linear.front(), rows, model_.averaged_labels, probabilities);
+        const std::vector<float> lying = probabilities_of(
+            model_, model_.unary.front(), model_.linear.empty() ? nullptr : &model_.linear.front(), rows);
         std::vector<double> result(turns.size(), 0);
-        for (std::size_t i = 0; i < probabilities.size(); ++i)
-            if (const double p = probabilities[i]; p > 0)
-                result[i / (count * classes)] += p * std::log(p) / static_cast<double>(count);
+        for (std::size_t row = 0; row < rows.rows; ++row) {
+            const std::span p = std::span(lying).subspan(row * classes, classes);
+            const std::span q = std::span(as_shaped_).subspan(row % count * classes, classes);
+            double certainty = 0, agreement = 0;
+            for (std::size_t c = 0; c < classes; ++c) {
+                certainty += p[c] > 0 ? double{p[c]} * std::log(double{p[c]}) : 0;
+                agreement += double{p[c]} * double{q[c]};
+            }
+            result[row / count] +=
+                (certainty + std::log(std::max(agreement, k_min_agreement))) / static_cast<double>(count);
+        }
         return result;
     }
 
     const LabelingModel& model_;
-    CpuStumpScorer scorer_;  // few rows many times: a device would mostly wait
     std::size_t base_, faces_;
     std::vector<std::uint32_t> face_;
     std::vector<Eigen::Vector3f> position_;
-    std::vector<float> base_values_;  ///< base features without coordinates, feature-major
+    FeatureMatrix base_values_;     ///< of the judged faces, without coordinates
+    std::vector<float> as_shaped_;  ///< probabilities without coordinates
 };
 
 /// Turns a little further about one axis, by at most one step of each size, where that is better.
-Eigen::Matrix3f refine(TurnJudge& judge, Eigen::Matrix3f best, double certainty) {
+Eigen::Matrix3f refine(TurnJudge& judge, Eigen::Matrix3f best, double fitness) {
     for (const float degrees : k_refinements) {
         Turns near;
         for (int axis = 0; axis < 3; ++axis)
             for (const float sign : {-1.0F, 1.0F})
                 near.emplace_back(about(Eigen::Vector3f::Unit(axis), sign * degrees) * best);
-        const std::vector<double> values = judge.certainty(near);
+        const std::vector<double> values = judge.fitness(near);
         const auto found = std::ranges::max_element(values);
-        if (*found > certainty) certainty = *found, best = near[static_cast<std::size_t>(found - values.begin())];
+        if (*found > fitness) fitness = *found, best = near[static_cast<std::size_t>(found - values.begin())];
     }
     return best;
 }
@@ -150,10 +173,10 @@ std::vector<Eigen::Matrix3f> coarse_turns() {
 Eigen::Matrix3f likeliest_turn(const LabelingModel& model, const MeshFeatures& features) {
     TurnJudge judge(model, features);
     const Turns turns = coarse_turns();
-    const std::vector<double> certainty = judge.certainty(turns);
-    const auto best = static_cast<std::size_t>(std::ranges::max_element(certainty) - certainty.begin());
-    if (certainty[best] < certainty.front() + k_min_gain) return Eigen::Matrix3f::Identity();
-    return refine(judge, turns[best], certainty[best]);
+    const std::vector<double> fitness = judge.fitness(turns);
+    const auto best = static_cast<std::size_t>(std::ranges::max_element(fitness) - fitness.begin());
+    if (fitness[best] < fitness.front() + k_min_gain) return Eigen::Matrix3f::Identity();
+    return refine(judge, turns[best], fitness[best]);
 }
 
 }  // namespace exemplar

@@ -10,6 +10,7 @@
 #include "host/core/json_text.h"
 #include "host/data/model_file.h"
 #include "host/data/safetensors.h"
+#include "host/labeling/inference/mesh_turn.h"
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_text.h"
 
@@ -116,8 +117,10 @@ float largest_score(const LinearClassifier& linear) {
     return sum;
 }
 
-LinearExpert get_linear(const TensorFile& file, const std::string& name, std::size_t classes, std::size_t features) {
+/// Returns the linear classifier of this name; one that is not used if the file has none.
+LinearExpert find_linear(const TensorFile& file, const std::string& name, std::size_t classes, std::size_t features) {
     LinearExpert expert;
+    if (!file.tensors.contains(name + ".weight")) return expert;
     LinearClassifier& linear = expert.classifier;
     linear.class_count = static_cast<std::uint32_t>(classes);
     linear.mean = file.get<float>(name + ".mean", {features});
@@ -147,6 +150,10 @@ void save_model(const std::filesystem::path& path, const LabelingModel& model) {
         add_classifier(file, fmt::format("unary.{}", s), model.unary[s]);
     for (std::size_t s = 0; s < model.linear.size(); ++s)
         if (model.linear[s].used()) add_linear(file, fmt::format("linear.{}", s), model.linear[s]);
+    if (uses_orientation(model)) {
+        add_classifier(file, "unoriented", model.unoriented);
+        if (model.unoriented_linear.used()) add_linear(file, "unoriented.linear", model.unoriented_linear);
+    }
     for (std::size_t s = 0; s < model.pairwise.size(); ++s)
         add_classifier(file, fmt::format("pairwise.{}", s), model.pairwise[s]);
     file.add("smallest_component", {model.class_count()}, model.smallest_component);
@@ -173,8 +180,12 @@ LabelingModel load_model(const std::filesystem::path& path) {
     for (std::size_t s = 0; s < model.unary.size(); ++s) {
         const std::size_t features = model.unary_names.size() + (s ? context : 0);
         model.unary[s] = get_classifier(file, fmt::format("unary.{}", s), classes, features);
-        const std::string linear = fmt::format("linear.{}", s);
-        if (file.tensors.contains(linear + ".weight")) model.linear[s] = get_linear(file, linear, classes, features);
+        model.linear[s] = find_linear(file, fmt::format("linear.{}", s), classes, features);
+    }
+    if (uses_orientation(model)) {
+        const std::size_t features = model.unary_names.size() - orientation_names().size();
+        model.unoriented = get_classifier(file, "unoriented", classes, features);
+        model.unoriented_linear = find_linear(file, "unoriented.linear", classes, features);
     }
     for (std::size_t s = 0; s < model.pairwise.size(); ++s)
         model.pairwise[s] = get_classifier(file, fmt::format("pairwise.{}", s), 2,

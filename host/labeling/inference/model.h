@@ -35,6 +35,10 @@ struct LabelingModel {
     /// The linear classifier that each stage of the unary cascade is combined with; stages without an entry are stumps
     /// alone.
     std::vector<LinearExpert> linear;
+    /// The first stage without coordinates, of a model with coordinates (uses_orientation): it tells how a mesh must be
+    /// turned.
+    CalibratedStumps unoriented;
+    LinearExpert unoriented_linear;
     /// Labels that training saw in one fold only: their probabilities are the mean over all stages (CascadePrediction),
     /// without the linear classifiers.
     std::vector<std::uint32_t> averaged_labels;

@@ -190,9 +190,9 @@ PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer&
     return kept;
 }
 
-/// Trains the first unary stage without and with the coordinates of the face centers (App. A.1h), or with what the
-/// options ask for, and keeps the better one. The meshes of a fold take part as they lie, so the held-out loss tells
-/// whether all lie alike.
+/// Trains the first unary stage without and with the coordinates of the face centers (App. A.1h), and keeps the better
+/// one, or what the options ask for. The meshes of a fold take part as they lie, so the held-out loss tells whether all
+/// lie alike.
 void train_first_stage(Cascade& cascade, std::vector<MeshFeatures>& features, const TrainOptions& options,
                        StumpScorer& scorer, LabelingModel& model, TrainReport& report) {
     const bool can_judge = features.size() >= k_min_oriented_meshes;
@@ -200,7 +200,7 @@ void train_first_stage(Cascade& cascade, std::vector<MeshFeatures>& features, co
         cascade.task.features = cascade.base_features;
         return run_stage(what, cascade.items, cascade.task, options, scorer, report);
     };
-    if (options.orientation != OrientationUse::always) cascade.first = run("unary 0");
+    cascade.first = run("unary 0");
     if (options.orientation == OrientationUse::never ||
         (options.orientation == OrientationUse::automatic && !can_judge))
         return;
@@ -208,8 +208,11 @@ void train_first_stage(Cascade& cascade, std::vector<MeshFeatures>& features, co
     for (MeshFeatures& mesh : features) set_orientation(mesh, base, Eigen::Matrix3f::Identity());
     cascade.base_features = features.front().unary.cols();
     FoldBoostingResult oriented = run("unary 0, xyz");
-    if (!cascade.first || oriented.loss < k_max_oriented_loss_ratio * cascade.first->loss) {
-        if (cascade.first) report.stages.front().kept = false;
+    if (options.orientation == OrientationUse::always ||
+        oriented.loss < k_max_oriented_loss_ratio * cascade.first->loss) {
+        report.stages.front().kept = false;
+        model.unoriented = std::move(cascade.first->classifier);
+        model.unoriented_linear = std::move(cascade.first->linear);
         cascade.first = std::move(oriented);
         model.unary_names = features.front().unary.names;
     } else {

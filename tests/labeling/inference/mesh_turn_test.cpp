@@ -64,15 +64,11 @@ MeshFeatures sphere_of_faces(std::size_t count) {
     return features;
 }
 
-/// Height and z each speak for one of two labels, at thresholds near the middle: the model is sure where they agree.
-LabelingModel upright_model() {
-    LabelingModel model;
-    model.label_names = {"below", "above"};
-    model.unary_names = {"shape.height"};
-    for (const std::string& name : orientation_names()) model.unary_names.push_back(name);
+/// A stage of which each feature speaks for one of two labels, at thresholds near the middle.
+CalibratedStumps stage_of(const std::vector<std::uint32_t>& features) {
     CalibratedStumps stage;
     stage.stumps.class_count = 2;
-    for (const std::uint32_t feature : {0U, 3U})
+    for (const std::uint32_t feature : features)
         for (const float threshold : {-0.1F, -0.05F, 0.05F, 0.1F}) {
             Stump stump;
             stump.feature = feature, stump.threshold = threshold, stump.classes = 2, stump.above = 1, stump.below = -1;
@@ -80,7 +76,17 @@ LabelingModel upright_model() {
             stage.stumps.elsewhere.insert(stage.stumps.elsewhere.end(), {0.0F, 0.0F});
         }
     stage.link = Link::softmax, stage.scale = 1;
-    model.unary = {stage};
+    return stage;
+}
+
+/// Knows faces by height (0) and z (3), and without coordinates by height.
+LabelingModel upright_model(const std::vector<std::uint32_t>& features = {0, 3}) {
+    LabelingModel model;
+    model.label_names = {"below", "above"};
+    model.unary_names = {"shape.height"};
+    for (const std::string& name : orientation_names()) model.unary_names.push_back(name);
+    model.unary = {stage_of(features)};
+    model.unoriented = stage_of({0});
     return model;
 }
 
@@ -108,6 +114,16 @@ TEST(MeshTurn, FindsUpHoweverAMeshLies) {
         const float off = std::acos(std::clamp((found * lies).row(2).dot(Eigen::RowVector3f::UnitZ()), -1.0F, 1.0F));
         EXPECT_LT(off * k_degrees, 30) << "trial " << trial;
     }
+}
+
+TEST(MeshTurn, AMeshOnItsHeadIsTurnedThoughItLooksAsSure) {
+    const LabelingModel model = upright_model({3});
+    const Eigen::Matrix3f lies =
+        Eigen::AngleAxisf(std::numbers::pi_v<float>, Eigen::Vector3f::UnitX()).toRotationMatrix();
+    MeshFeatures features = sphere_of_faces(600);
+    turn_positions(features, lies);
+    set_orientation(features, 1, Eigen::Matrix3f::Identity());
+    EXPECT_GT((likeliest_turn(model, features) * lies)(2, 2), 0.9F);
 }
 
 TEST(MeshTurn, AMeshThatLiesWellStays) {

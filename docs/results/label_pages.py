@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""Writes the page of a labeling protocol from the report of `exemplar label evaluate`.
+
+    docs/results/label_pages.py out/sb6/report.json > docs/results/labeling_sb6.md
+
+The page holds all rates per category beside those of the thesis, the scatter of the splits, what is confused most, and the
+features that boosting chose (thesis Fig. 3.5). With --peer in the evaluation, also the other program's rates, mesh by mesh.
+"""
+import argparse
+import json
+import statistics
+import sys
+
+PROTOCOLS = {
+    'sb3': ('three training meshes', 'SB3'),
+    'sb6': ('six training meshes', 'SB6'),
+    'sb12': ('twelve training meshes', 'SB12'),
+    'sb19': ('leave one out', 'SB19'),
+    'pfcn': ('twelve training and eight test meshes of ShapePFCN', '12/8')}
+RATES = [('recognition_rate', 'RR', 100), ('without_cut', 'no cut', 100), ('segment_weighted_accuracy', 'SW', 100),
+         ('rand_error', 'RI', 100), ('cut_discrepancy', 'CD', 1), ('hamming_distance', 'HD', 100), ('missing_rate', 'Rm', 100),
+         ('false_alarm_rate', 'Rf', 100), ('global_consistency_error', 'GCE', 100), ('local_consistency_error', 'LCE', 100)]
+VARIED = ('Bust', 'Bearing')  # categories whose labels differ so much from mesh to mesh that their rates are mostly chance
+
+
+def shown(value, factor=100):
+    """A rate in percent, or a number; '-' where there is none."""
+    if value is None:
+        return '-'
+    return f'{value * factor:.1f}' if factor == 100 else f'{value:.3f}'
+
+
+def mean(values):
+    values = [value for value in values if value is not None]
+    return statistics.mean(values) if values else None
+
+
+def table(head, rows):
+    lines = [head, ['---'] * len(head), *rows]
+    return '\n'.join('| ' + ' | '.join(str(cell) for cell in line) + ' |' for line in lines)
+
+
+def rate_row(name, categories):
+    """The means over categories of their rates, and of the thesis' rates if all have them."""
+    row = [name] + [shown(mean([c[key] for c in categories]), factor) for key, _, factor in RATES]
+    for key in ('recognition_rate', 'rand_error'):
+        of_thesis = [c.get('thesis', {}).get(key) for c in categories]
+        row.append(shown(None if None in of_thesis else mean(of_thesis)))
+    return row
+
+
+def rates(report):
+    categories = report['categories']
+    rows = [rate_row(c['category'], [c]) for c in categories]
+    rows.append([f'**{cell}**' for cell in rate_row('mean', categories)])
+    others = [c for c in categories if c['category'] not in VARIED]
+    if 0 < len(others) < len(categories):
+        rows.append(rate_row('without ' + ' and '.join(VARIED), others))
+    return table(['category'] + [column for _, column, _ in RATES] + ['thesis RR', 'thesis RI'], rows)
+
+
+def scatter(report):
+    """The means over the categories of each split."""
+    categories = report['categories']
+    count = min(len(c['splits']) for c in categories)
+    rows = []
+    for key, name, _ in RATES[:4]:
+        of_split = [mean([mean([mesh[key] for mesh in c['splits'][k]['meshes']]) for c in categories]) for k in range(count)]
+        rows.append([name] + [shown(value) for value in of_split])
+    return table([''] + [f'split {k + 1}' for k in range(count)], rows)
+
+
+def peer(report):
+    columns = ['own_recognition_rate', 'recognition_rate', 'own_segment_weighted_accuracy', 'segment_weighted_accuracy']
+    rows = []
+    for name, one in [(c['category'], c['peer']) for c in report['categories'] if 'peer' in c] + [('mean', report['peer'])]:
+        rows.append([name, one['meshes']] + [shown(one[key]) for key in columns] + [one['ahead'], one['behind']])
+    return table(['category', 'meshes', 'RR', 'its RR', 'SW', 'its SW', 'ahead', 'behind'], rows)
+
+
+def confused(report):
+    rows = []
+    for category in report['categories']:
+        for pair in category['confused'][:2]:
+            if pair['area_share'] >= 0.005:
+                rows.append([category['category'], pair['truth'], pair['predicted'], shown(pair['area_share']), shown(pair['label_share'])])
+    return table(['category', 'label', 'taken for', '% of the surface', '% of the label'], rows)
+
+
+def families(report):
+    stages = report['features']
+    total = {}
+    for stage in stages:
+        for family, share in stage['share_per_family'].items():
+            total[family] = total.get(family, 0) + share * stage['stumps']
+    rows = [[family] + [shown(stage['share_per_family'].get(family, 0)) for stage in stages]
+            for family in sorted(total, key=total.get, reverse=True)]
+    return table(['family'] + [stage['stage'] for stage in stages], rows)
+
+
+def page(report):
+    words, short = PROTOCOLS[report['protocol']]
+    categories, options = report['categories'], report['options']
+    splits = max(len(c['splits']) for c in categories)
+    trainings = sum(len(c['splits']) for c in categories)
+    command = f'exemplar label evaluate --protocol {report["protocol"]} psb/labeled'
+    if splits > 1 and report['protocol'] not in ('sb19', 'pfcn'):
+        command += f' --splits {splits}'
+    command += f' --out out/{report["protocol"]}' + (' --peer authors' if 'peer' in report else '')
+    text = [f'# Labeling: {words} ({short})', '',
+            f'Written by `docs/results/label_pages.py` from the report of this command ({trainings} trainings, '
+            f'{sum(c["meshes"] for c in categories)} labelings of unseen meshes; version {options["training"]} of the training, '
+            f'{options["features"]} of the features):', '',
+            f'    {command}', '',
+            'In percent, but CD. RR: recognition rate. No cut: the recognition rate of the classifiers alone. SW: segment-weighted',
+            'accuracy. Against all human segmentations: RI, Rand index error; CD, cut discrepancy; HD, Hamming distance, the mean of Rm',
+            '(missing) and Rf (false alarms); GCE and LCE, global and local consistency error.', '',
+            rates(report), '']
+    if 'peer' in report:
+        text += ["## Beside the thesis authors' labels", '',
+                 'Ahead and behind count meshes by recognition rate. Their labels are of the same meshes, each labeled by a model of the',
+                 'nineteen others.', '', peer(report), '']
+    if splits > 1 and report['protocol'] != 'sb19':
+        text += ['## Scatter of the splits', '', 'Means over the categories:', '', scatter(report), '']
+    text += ['## What is confused most', '', confused(report), '', '## Chosen features', '',
+             'Percent of the stumps of each classifier that use a feature of the family (thesis Fig. 3.5).', '', families(report), '']
+    return '\n'.join(text)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('report', help='report.json in the --out folder of the evaluation')
+    path = parser.parse_args().report
+    try:
+        with open(path, encoding='utf-8') as file:
+            report = json.load(file)
+        if report['protocol'] not in PROTOCOLS:
+            sys.exit(f'{path}: is the report of no protocol; call `exemplar label evaluate --protocol`')
+        print(page(report), end='')
+    except (OSError, KeyError, TypeError, json.JSONDecodeError) as error:
+        sys.exit(f'{path}: is no report of `exemplar label evaluate` ({error!r})')
+
+
+if __name__ == '__main__':
+    main()

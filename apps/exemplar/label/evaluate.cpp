@@ -29,6 +29,7 @@ struct EvaluateCommand {
     std::string protocol;
     std::optional<std::size_t> splits;
     bool fresh = false, curve = false;
+    double memory = k_feature_gigabytes;
     TrainOptions train;
 };
 
@@ -208,6 +209,7 @@ void run_label_evaluate(const EvaluateCommand& options) {
                       {.quiet = options.common.quiet,
                        .fresh = options.fresh,
                        .learning_curve = options.curve,
+                       .memory = options.memory,
                        .report = options.report});
     nlohmann::json report = run.evaluate(tasks, protocol_name(options), "Mesh labeling on unseen shapes");
 
@@ -287,6 +289,7 @@ void add_evaluate_command(Command& label) {
                       "also measure the rate against the number of training meshes, what three more would gain, and "
                       "which mesh to label next");
     add_training_options(*command, options->train, options->cache);
+    add_feature_memory_option(*command, options->memory);
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_label_evaluate(*options); });

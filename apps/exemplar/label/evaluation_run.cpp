@@ -172,7 +172,7 @@ LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::pat
     const Stopwatch watch;
     const LabeledCorpus corpus = working_corpus(load_corpus(task.train, {}, task.labels));
     warn(corpus.warnings);
-    std::vector<MeshFeatures> features = features_of(corpus, train_.features, cache_);
+    TrainingFeatures features = training_features(corpus, train_.features, cache_, behavior_.memory);
     const double feature_seconds = watch.wall();
     TrainReport report;
     LabelingModel model = train_labeling(corpus, features, train_, backend_.labeling(), report);

@@ -37,6 +37,7 @@ class EvaluationRun {
         bool quiet = false;                        ///< no tables, no warnings
         bool fresh = false;                        ///< reuse nothing of an earlier run
         bool learning_curve = false;               ///< measure the rate against the number of training meshes
+        double memory = k_feature_gigabytes;       ///< for the features of training meshes
         std::filesystem::path report = {};         ///< the page's folder; empty: the output folder
         std::vector<ReportDrawing> drawings = {};  ///< below the categories of the page
     };

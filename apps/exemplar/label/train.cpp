@@ -18,6 +18,7 @@ struct TrainCommand {
     std::vector<std::filesystem::path> sources;
     std::filesystem::path out, labels;
     std::filesystem::path cache = default_feature_folder();
+    double memory = k_feature_gigabytes;
     RigExamples rigs;
     TrainOptions train;
 };
@@ -42,7 +43,7 @@ void run_label_train(const TrainCommand& options) {
     if (!options.common.quiet)
         for (const std::string& warning : corpus.warnings) fmt::print(stderr, "warning: {}\n", warning);
     DeviceBackend backend(options.common.device);
-    std::vector<MeshFeatures> features = features_of(corpus, options.train.features, cache);
+    TrainingFeatures features = training_features(corpus, options.train.features, cache, options.memory);
     const double feature_seconds = watch.wall();
     TrainReport report;
     const LabelingModel model = train_labeling(corpus, features, options.train, backend.labeling(), report);
@@ -130,6 +131,7 @@ void add_train_command(Command& label) {
     command->add_option("--out", options->out, "model file to write, .safetensors")->required()->type_name("FILE");
     add_rig_example_options(*command, options->rigs);
     add_training_options(*command, options->train, options->cache);
+    add_feature_memory_option(*command, options->memory);
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_label_train(*options); });

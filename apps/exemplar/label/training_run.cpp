@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "host/core/interrupt.h"
@@ -21,6 +22,27 @@ std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const Feature
         progress.advance(1, mesh.name);
     }
     return features;
+}
+
+TrainingFeatures training_features(const LabeledCorpus& corpus, const FeatureOptions& options,
+                                   const std::filesystem::path& cache, double gigabytes) {
+    Progress progress("computing features", corpus.meshes.size());
+    const auto load = [&corpus, options, cache](std::size_t mesh) {
+        check_interrupt();
+        return cached_features(corpus.meshes[mesh].mesh, options, cache);
+    };
+    const std::size_t bytes =
+        cache.empty() ? std::numeric_limits<std::size_t>::max() : static_cast<std::size_t>(gigabytes * 1e9);
+    return {corpus.meshes.size(), load, bytes,
+            [&](std::size_t mesh) { progress.advance(1, corpus.meshes[mesh].name); }};
+}
+
+void add_feature_memory_option(Command& command, double& gigabytes) {
+    command
+        .add_option("--feature-memory", gigabytes,
+                    "gigabytes of features to keep in memory; those of further meshes are read from --cache again")
+        ->capture_default_str()
+        ->check(in_range(0.0, 1e6));
 }
 
 std::vector<std::pair<std::string, std::size_t>> stumps_per_family(const LabelingModel& model,

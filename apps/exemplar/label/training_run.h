@@ -20,6 +20,15 @@ void add_training_options(Command& command, TrainOptions& options, std::filesyst
 std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const FeatureOptions& options,
                                       const std::filesystem::path& cache);
 
+/// Features of training meshes that stay in memory, unless the user says otherwise.
+constexpr double k_feature_gigabytes = 0.5;
+/// The same, but those that do not fit into so much memory are read from the cache again whenever training needs them.
+/// Without a cache all stay in memory. The corpus must outlive the result.
+TrainingFeatures training_features(const LabeledCorpus& corpus, const FeatureOptions& options,
+                                   const std::filesystem::path& cache, double gigabytes);
+/// Adds --feature-memory, the gigabytes of training_features, to a subcommand.
+void add_feature_memory_option(Command& command, double& gigabytes);
+
 /// Returns the number of stumps of the unary cascade, or of its classifier `stage`, per feature family, most used
 /// first.
 std::vector<std::pair<std::string, std::size_t>> stumps_per_family(const LabelingModel& model,

@@ -88,17 +88,15 @@ TrainingRows collect_training_rows(std::span<const BoostingItems> meshes, const 
     }
     TrainingRows pool;
     pool.features.rows = offset.back();
-    const auto& names = meshes.front().features->names;
-    pool.features.names.assign(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(options.features));
     pool.features.values.resize(options.features * offset.back());
-    parallel_for(options.features, [&](std::size_t f) {
-        float* out = pool.features.column(f).data();
-        for (std::size_t m = 0; m < meshes.size(); ++m) {
-            const std::span<const float> column = meshes[m].features->column(f);
-            for (const std::uint32_t row : rows[m].row) *out++ = column[row];
-        }
-    });
     for (std::size_t m = 0; m < meshes.size(); ++m) {
+        const FeatureMatrix& features = meshes[m].features();
+        const auto names = std::span(features.names).first(options.features);
+        pool.features.names.assign(names.begin(), names.end());
+        parallel_for(options.features, [&](std::size_t f) {
+            float* out = pool.features.values.data() + f * offset.back() + offset[m];
+            for (const std::uint32_t row : rows[m].row) *out++ = features.column(f)[row];
+        });
         for (const std::uint32_t row : rows[m].row) {
             pool.label.push_back(meshes[m].label[row]);
             pool.fold.push_back(meshes[m].fold[row]);
@@ -286,17 +284,18 @@ std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems>
     std::vector<std::vector<float>> result;
     for (const BoostingItems& mesh : meshes) {
         const std::size_t size = mesh.fold.size() * classes;
+        const FeatureMatrix& features = mesh.features();
         std::vector<float> scores(size), from_fold(size), seen(size);
         for (std::size_t fold = 0; fold < of_fold.size(); ++fold) {
             const auto holds = [&](std::uint8_t f) { return f == fold; };
             if (std::none_of(mesh.fold.begin(), mesh.fold.end(), holds)) continue;
             const BoostedStumps& classifier = of_fold[fold].class_count ? of_fold[fold] : everywhere.stumps;
-            scorer.probabilities(classifier, *mesh.features, everywhere.link, everywhere.scale, from_fold);
-            if (linear) pool(linear->without_fold[fold], *mesh.features, single_fold_labels, from_fold);
+            scorer.probabilities(classifier, features, everywhere.link, everywhere.scale, from_fold);
+            if (linear) pool(linear->without_fold[fold], features, single_fold_labels, from_fold);
             const std::vector<std::uint32_t> alone = labels.of_fold_alone(fold);
             if (!alone.empty())
-                scorer.probabilities(everywhere.stumps, *mesh.features, everywhere.link,
-                                     k_seen_scale * everywhere.scale, seen);
+                scorer.probabilities(everywhere.stumps, features, everywhere.link, k_seen_scale * everywhere.scale,
+                                     seen);
             for (std::size_t i = 0; i < mesh.fold.size(); ++i) {
                 if (mesh.fold[i] != fold) continue;
                 const std::span<float> item = std::span(scores).subspan(i * classes, classes);

@@ -14,7 +14,8 @@ namespace exemplar {
 
 /// The items (faces or edges) of one mesh that a classifier is trained on.
 struct BoostingItems {
-    const FeatureMatrix* features;        ///< at least the columns to train on
+    /// Returns at least the columns to train on. They may be gone when those of another mesh are asked for.
+    std::function<const FeatureMatrix&()> features;
     std::span<const std::int32_t> label;  ///< per item; items with -1 are ignored
     std::span<const float> weight;        ///< per item
     std::span<const std::uint8_t> fold;   ///< per item: the fold that holds it out

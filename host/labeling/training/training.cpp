@@ -80,13 +80,13 @@ struct Folds {
     std::vector<std::vector<std::uint8_t>> of_face;  ///< per mesh
 };
 
-Folds make_folds(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features, std::uint64_t seed,
-                 TrainReport& report) {
+Folds make_folds(const LabeledCorpus& corpus, TrainingFeatures& features, std::uint64_t seed, TrainReport& report) {
     const std::size_t meshes = corpus.meshes.size();
     Folds folds;
     if (meshes == 1) {
-        folds.count = std::clamp<std::size_t>(features[0].context.sample_face.size(), 1, k_max_folds);
-        folds.of_face = {patches_as_folds(features[0], folds.count)};
+        const MeshFeatures& mesh = features.at(0);
+        folds.count = std::clamp<std::size_t>(mesh.context.sample_face.size(), 1, k_max_folds);
+        folds.of_face = {patches_as_folds(mesh, folds.count)};
         report.folds.assign(folds.count, {corpus.meshes[0].name + " (patches)"});
         return folds;
     }
@@ -141,6 +141,36 @@ FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingIt
     return result;
 }
 
+/// The columns that a cascade sees of the meshes. What is not of the mesh alone is appended when it is needed: the
+/// features of a mesh may just have been read again.
+struct CascadeColumns {
+    TrainingFeatures& features;
+    FeatureMatrix MeshFeatures::*matrix;
+    std::size_t of_mesh;         ///< columns of the mesh alone
+    std::size_t base = of_mesh;  ///< with coordinates, if the cascade has them
+    std::size_t context = 0;     ///< contextual columns of the stages after the first
+    /// Appends the contextual columns of a mesh, from the out-of-fold probabilities (items x classes) of the last
+    /// stage.
+    std::function<void(MeshFeatures&, std::span<const float> probabilities)> add_context = {};
+    const PerMesh* probabilities = nullptr;  ///< of the last stage; null in the first stage
+    std::vector<bool> is_new = {};           ///< per mesh: its contextual columns are still those of an earlier stage
+
+    void begin_stage(const PerMesh& of_last_stage) {
+        probabilities = &of_last_stage;
+        is_new.assign(features.count(), true);
+    }
+    std::size_t count() const { return base + (probabilities ? context : 0); }
+    const FeatureMatrix& of(std::size_t m) {
+        MeshFeatures& mesh = features.at(m);
+        if (base > of_mesh && (mesh.*matrix).cols() < base) set_orientation(mesh, of_mesh, Eigen::Matrix3f::Identity());
+        if (probabilities && (is_new[m] || (mesh.*matrix).cols() < count())) {
+            add_context(mesh, (*probabilities)[m]);
+            is_new[m] = false;
+        }
+        return mesh.*matrix;
+    }
+};
+
 /// A cascade to train. Each stage after the first also sees contextual features, computed from the predictions of the
 /// stage before.
 struct Cascade {
@@ -148,11 +178,15 @@ struct Cascade {
     std::size_t max_cascade_stages;
     double max_loss_ratio;     ///< a stage is kept if its loss is below this factor times that of the stage before
     FoldBoostingOptions task;  ///< its number of features and seed are set per stage
-    std::size_t base_features, context_features;
-    std::vector<BoostingItems> items;         ///< per mesh
-    std::optional<FoldBoostingResult> first;  ///< the first stage, if it is trained already
-    /// Fills the contextual columns of a mesh from the out-of-fold probabilities (items x classes) of the last stage.
-    std::function<void(std::size_t mesh, std::span<const float> probabilities)> add_context;
+    CascadeColumns& columns;
+    std::vector<BoostingItems> items = {};         ///< per mesh
+    std::optional<FoldBoostingResult> first = {};  ///< the first stage, if it is trained already
+
+    void add_items(std::span<const std::int32_t> label, std::span<const float> weight,
+                   std::span<const std::uint8_t> fold) {
+        items.push_back({[&columns = columns, m = items.size()]() -> const FeatureMatrix& { return columns.of(m); },
+                         label, weight, fold});
+    }
 };
 
 /// Trains stage after stage until the out-of-fold loss rises; returns the out-of-fold probabilities of the last kept
@@ -166,8 +200,8 @@ PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer&
     double last_loss = std::numeric_limits<double>::infinity();
     const std::uint64_t first_seed = cascade.task.seed;
     for (std::size_t stage = 0; stage < cascade.max_cascade_stages; ++stage) {
-        for (std::size_t m = 0; m < kept.size(); ++m) cascade.add_context(m, kept[m]);
-        cascade.task.features = cascade.base_features + (stage > 0 ? cascade.context_features : 0);
+        if (stage > 0) cascade.columns.begin_stage(kept);
+        cascade.task.features = cascade.columns.count();
         cascade.task.seed = first_seed + stage;
         FoldBoostingResult result = stage == 0 && cascade.first
                                         ? std::move(*cascade.first)
@@ -193,20 +227,19 @@ PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer&
 /// Trains the first unary stage without and with the coordinates of the face centers (App. A.1h), and keeps the better
 /// one, or what the options ask for. The meshes of a fold take part as they lie, so the held-out loss tells whether all
 /// lie alike.
-void train_first_stage(Cascade& cascade, std::vector<MeshFeatures>& features, const TrainOptions& options,
-                       StumpScorer& scorer, LabelingModel& model, TrainReport& report) {
-    const bool can_judge = features.size() >= k_min_oriented_meshes;
+void train_first_stage(Cascade& cascade, const TrainOptions& options, StumpScorer& scorer, LabelingModel& model,
+                       TrainReport& report) {
+    const bool can_judge = cascade.items.size() >= k_min_oriented_meshes;
     const auto run = [&](const char* what) {
-        cascade.task.features = cascade.base_features;
+        cascade.task.features = cascade.columns.count();
         return run_stage(what, cascade.items, cascade.task, options, scorer, report);
     };
     cascade.first = run("unary 0");
     if (options.orientation == OrientationUse::never ||
         (options.orientation == OrientationUse::automatic && !can_judge))
         return;
-    const std::size_t base = cascade.base_features;
-    for (MeshFeatures& mesh : features) set_orientation(mesh, base, Eigen::Matrix3f::Identity());
-    cascade.base_features = features.front().unary.cols();
+    const std::vector<std::string> coordinates = orientation_names();
+    cascade.columns.base += coordinates.size();
     FoldBoostingResult oriented = run("unary 0, xyz");
     if (options.orientation == OrientationUse::always ||
         oriented.loss < k_max_oriented_loss_ratio * cascade.first->loss) {
@@ -214,38 +247,39 @@ void train_first_stage(Cascade& cascade, std::vector<MeshFeatures>& features, co
         model.unoriented = std::move(cascade.first->classifier);
         model.unoriented_linear = std::move(cascade.first->linear);
         cascade.first = std::move(oriented);
-        model.unary_names = features.front().unary.names;
+        model.unary_names.insert(model.unary_names.end(), coordinates.begin(), coordinates.end());
     } else {
         report.stages.back().kept = false;
-        cascade.base_features = base;
+        cascade.columns.base = cascade.columns.of_mesh;
     }
 }
 
 /// Trains the unary cascade; returns the out-of-fold probabilities of its last kept stage.
-PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features, const Folds& folds,
+PerMesh train_unary(const LabeledCorpus& corpus, TrainingFeatures& features, const Folds& folds,
                     const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
                     TrainReport& report) {
     const std::size_t classes = corpus.names.size();
     const std::vector<std::string> context = context_names(corpus.names);
     std::vector<std::vector<float>> weights;
-    weights.reserve(features.size());
-    for (const MeshFeatures& mesh : features) weights.push_back(normalized(mesh.face_area));
+    weights.reserve(features.count());
+    for (std::size_t m = 0; m < features.count(); ++m) weights.push_back(normalized(features.outline(m).face_area));
     favor_rare_labels(corpus, weights);
 
-    Cascade cascade{
-        "unary", options.max_stages, k_max_unary_loss_ratio, {}, model.unary_names.size(), context.size(), {}, {}, {}};
+    CascadeColumns columns{features, &MeshFeatures::unary, model.unary_names.size()};
+    columns.context = context.size();
+    columns.add_context = [&](MeshFeatures& mesh, std::span<const float> probabilities) {
+        backend.context.accumulate(mesh.context, probabilities, classes,
+                                   context_columns(mesh.unary, columns.base, context));
+    };
+    Cascade cascade{"unary", options.max_stages, k_max_unary_loss_ratio, {}, columns};
     cascade.task.classes = classes;
     cascade.task.linear = options.linear;
     cascade.task.patience = 0;  // the error keeps falling when the loss rises: see docs/labeling.md
     cascade.task.folds = folds.count;
     cascade.task.seed = options.seed + k_unary_task;
-    for (std::size_t m = 0; m < features.size(); ++m)
-        cascade.items.push_back({&features[m].unary, corpus.meshes[m].label, weights[m], folds.of_face[m]});
-    cascade.add_context = [&](std::size_t m, std::span<const float> probabilities) {
-        backend.context.accumulate(features[m].context, probabilities, classes,
-                                   context_columns(features[m].unary, model.unary_names.size(), context));
-    };
-    train_first_stage(cascade, features, options, backend.scorer, model, report);
+    for (std::size_t m = 0; m < features.count(); ++m)
+        cascade.add_items(corpus.meshes[m].label, weights[m], folds.of_face[m]);
+    train_first_stage(cascade, options, backend.scorer, model, report);
     return train_cascade(std::move(cascade), options, backend.scorer, model.unary, model.linear, &model.averaged_labels,
                          report);
 }
@@ -259,15 +293,14 @@ struct EdgeTargets {
     bool both = false;  ///< whether both boundaries and other edges occur
 };
 
-EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features,
-                              const Folds& folds) {
+EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const TrainingFeatures& features, const Folds& folds) {
     EdgeTargets targets;
     std::array<double, 2> count{0, 0};
-    for (std::size_t m = 0; m < features.size(); ++m) {
+    for (std::size_t m = 0; m < features.count(); ++m) {
         const std::vector<std::int32_t>& face_label = corpus.meshes[m].label;
         std::vector<std::int32_t> label;
         std::vector<std::uint8_t> fold;
-        for (const auto& [a, b] : features[m].edges) {
+        for (const auto& [a, b] : features.outline(m).edges) {
             const bool known = face_label[a] >= 0 && face_label[b] >= 0;
             label.push_back(known ? static_cast<std::int32_t>(face_label[a] != face_label[b]) : -1);
             fold.push_back(folds.of_face[m][a]);
@@ -275,11 +308,11 @@ EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<Mes
         }
         targets.label.push_back(std::move(label));
         targets.fold.push_back(std::move(fold));
-        targets.weight.push_back(normalized(features[m].edge_length));
+        targets.weight.push_back(normalized(features.outline(m).edge_length));
     }
     targets.both = count[0] > 0 && count[1] > 0;
     const double total = std::max(count[0] + count[1], 1.0);
-    for (std::size_t m = 0; m < features.size(); ++m)
+    for (std::size_t m = 0; m < features.count(); ++m)
         for (std::size_t e = 0; e < targets.label[m].size(); ++e)
             if (const std::int32_t label = targets.label[m][e]; label >= 0)
                 targets.weight[m][e] *= static_cast<float>(count[1 - label] / total);
@@ -289,35 +322,30 @@ EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<Mes
 /// Trains the boundary classifiers; returns the out-of-fold boundary probability per edge. If the parts of all meshes
 /// are separate pieces, or the options ask for none, the model gets no classifier, and all probabilities are
 /// k_unknown_boundary_probability.
-PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features, const Folds& folds,
+PerMesh train_pairwise(const LabeledCorpus& corpus, TrainingFeatures& features, const Folds& folds,
                        const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
                        TrainReport& report) {
     const EdgeTargets targets = make_edge_targets(corpus, features, folds);
     if (!targets.both || !options.boundary) {
         PerMesh even;
-        for (const MeshFeatures& mesh : features) even.emplace_back(mesh.edges.size(), k_unknown_boundary_probability);
+        for (std::size_t m = 0; m < features.count(); ++m)
+            even.emplace_back(features.outline(m).edges.size(), k_unknown_boundary_probability);
         return even;
     }
-    Cascade cascade{"pairwise",
-                    k_pairwise_stages,
-                    k_max_pairwise_loss_ratio,
-                    {},
-                    model.pairwise_names.size(),
-                    EdgeNeighborhood::k_bins,
-                    {},
-                    {},
-                    {}};
+    const std::vector<std::string> context = edge_context_names();
+    CascadeColumns columns{features, &MeshFeatures::pairwise, model.pairwise_names.size()};
+    columns.context = context.size();
+    columns.add_context = [&](MeshFeatures& mesh, std::span<const float> probabilities) {
+        accumulate_edge_context(mesh, boundary_column(probabilities),
+                                context_columns(mesh.pairwise, columns.base, context));
+    };
+    Cascade cascade{"pairwise", k_pairwise_stages, k_max_pairwise_loss_ratio, {}, columns};
     cascade.task.binary = true;
     cascade.task.patience = options.patience;
     cascade.task.folds = folds.count;
     cascade.task.seed = options.seed + k_pairwise_task;
-    for (std::size_t m = 0; m < features.size(); ++m)
-        cascade.items.push_back({&features[m].pairwise, targets.label[m], targets.weight[m], targets.fold[m]});
-    cascade.add_context = [&](std::size_t m, std::span<const float> probabilities) {
-        accumulate_edge_context(
-            features[m], boundary_column(probabilities),
-            context_columns(features[m].pairwise, model.pairwise_names.size(), edge_context_names()));
-    };
+    for (std::size_t m = 0; m < features.count(); ++m)
+        cascade.add_items(targets.label[m], targets.weight[m], targets.fold[m]);
     std::vector<LinearExpert> none;
     PerMesh boundary =
         train_cascade(std::move(cascade), options, backend.scorer, model.pairwise, none, nullptr, report);
@@ -350,11 +378,11 @@ std::vector<float> smallest_of_others(const PerMesh& of_mesh, std::size_t left_o
     return smallest;
 }
 
-std::vector<bool> touching_labels(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features) {
+std::vector<bool> touching_labels(const LabeledCorpus& corpus, const TrainingFeatures& features) {
     const std::size_t classes = corpus.names.size();
     std::vector<bool> touching(classes * classes, false);
-    for (std::size_t m = 0; m < features.size(); ++m)
-        for (const auto& [a, b] : features[m].edges) {
+    for (std::size_t m = 0; m < features.count(); ++m)
+        for (const auto& [a, b] : features.outline(m).edges) {
             const std::int32_t x = corpus.meshes[m].label[a], y = corpus.meshes[m].label[b];
             if (x >= 0 && y >= 0 && x != y) touching[x * classes + y] = touching[y * classes + x] = true;
         }
@@ -379,19 +407,20 @@ std::vector<std::vector<std::int32_t>> learnable_labels(const LabeledCorpus& cor
     return learnable;
 }
 
-void train_crf(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features, const Folds& folds,
+void train_crf(const LabeledCorpus& corpus, const TrainingFeatures& features, const Folds& folds,
                const PerMesh& probabilities, const PerMesh& boundary, LabelingModel& model, TrainReport& report) {
     const std::size_t classes = corpus.names.size();
     PerMesh smallest;
-    for (std::size_t m = 0; m < features.size(); ++m)
-        smallest.push_back(smallest_pieces(features[m], corpus.meshes[m].label, classes));
+    for (std::size_t m = 0; m < features.count(); ++m)
+        smallest.push_back(smallest_pieces(features.outline(m), corpus.meshes[m].label, classes));
     model.smallest_component = smallest_of_others(smallest, k_no_mesh);
 
     const std::vector<std::vector<std::int32_t>> truth = learnable_labels(corpus, folds);
     std::vector<CrfExample> examples;
-    for (std::size_t m = 0; m < features.size(); ++m)
-        examples.push_back({&features[m], make_crf_terms(features[m], probabilities[m], classes, boundary[m]), truth[m],
-                            smallest_of_others(smallest, features.size() > 1 ? m : k_no_mesh)});
+    for (std::size_t m = 0; m < features.count(); ++m)
+        examples.push_back({&features.outline(m),
+                            make_crf_terms(features.outline(m), probabilities[m], classes, boundary[m]), truth[m],
+                            smallest_of_others(smallest, features.count() > 1 ? m : k_no_mesh)});
     const std::vector<bool> touching = touching_labels(corpus, features);
     Progress progress("searching CRF parameters", crf_search_evaluations(classes, touching));
     const Stopwatch watch;
@@ -416,15 +445,21 @@ OrientationUse orientation_use(const std::string& name) {
 
 LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features,
                              const TrainOptions& options, const LabelingBackend& backend, TrainReport& report) {
-    require_trainable(corpus, features.size());
-    report = {};
     for (MeshFeatures& mesh : features) drop_context_columns(mesh);
+    TrainingFeatures in_memory(features);
+    return train_labeling(corpus, in_memory, options, backend, report);
+}
+
+LabelingModel train_labeling(const LabeledCorpus& corpus, TrainingFeatures& features, const TrainOptions& options,
+                             const LabelingBackend& backend, TrainReport& report) {
+    require_trainable(corpus, features.count());
+    report = {};
     LabelingModel model;
     model.label_names = corpus.names;
     for (std::size_t c = 0; c < corpus.names.size(); ++c) model.label_colors.push_back(label_color(c));
     model.feature_options = options.features;
-    model.unary_names = features.front().unary.names;
-    model.pairwise_names = features.front().pairwise.names;
+    model.unary_names = features.at(0).unary.names;
+    model.pairwise_names = features.at(0).pairwise.names;
     model.seed = options.seed;
     for (const LabeledMesh& mesh : corpus.meshes) model.provenance.push_back(mesh.name + " " + content_hash(mesh.mesh));
 

@@ -9,6 +9,7 @@
 #include "host/labeling/inference/model.h"
 #include "host/labeling/training/crf_learning.h"
 #include "host/labeling/training/fold_boosting.h"
+#include "host/labeling/training/training_features.h"
 
 namespace exemplar {
 
@@ -63,7 +64,8 @@ struct TrainReport {
     std::vector<std::vector<std::string>> folds;  ///< mesh names per fold
 };
 
-/// Trains a labeler from labeled meshes and their features (one per mesh, same order; they gain contextual columns).
+/// Trains a labeler from labeled meshes and their features (one per mesh, same order). The model does not depend on how
+/// many features are kept in memory.
 ///
 /// The 4 : 1 split of thesis Sec. 3.3 is rotated over up to five folds of meshes, drawn at random (by seed); with 2
 /// to 4 meshes each is a fold, a single mesh is cut into patches of faces. The out-of-fold probabilities of each
@@ -74,6 +76,9 @@ struct TrainReport {
 /// docs/labeling.md explains the choices.
 ///
 /// Throws DataError if there is no mesh, no labeled face, or fewer than two or more than k_max_classes labels.
+LabelingModel train_labeling(const LabeledCorpus& corpus, TrainingFeatures& features, const TrainOptions& options,
+                             const LabelingBackend& backend, TrainReport& report);
+/// The same with all features in memory; they gain contextual columns.
 LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features,
                              const TrainOptions& options, const LabelingBackend& backend, TrainReport& report);
 

@@ -84,7 +84,8 @@ void boost(const char* in, const char* out) {
     LinearExpert linear;
     std::vector<std::uint32_t> stump_only_labels;
     if (options.folds > 1) {
-        const BoostingItems items{&rows.features, rows.label, rows.weight, rows.fold};
+        const BoostingItems items{[&]() -> const FeatureMatrix& { return rows.features; }, rows.label, rows.weight,
+                                  rows.fold};
         FoldBoostingResult found = boost_with_folds(std::span(&items, 1), options, scorer, [] {});
         classifier = std::move(found.classifier);
         linear = std::move(found.linear), stump_only_labels = std::move(found.single_fold_labels);

@@ -21,8 +21,8 @@ Meshes make_meshes(std::size_t count, std::size_t rows, double noise) {
         meshes.fold.emplace_back(rows, static_cast<std::uint8_t>(m));
     }
     for (std::size_t m = 0; m < count; ++m)
-        meshes.items.push_back(
-            {&meshes.data[m].features, meshes.data[m].labels, meshes.data[m].weights, meshes.fold[m]});
+        meshes.items.push_back({[&matrix = meshes.data[m].features]() -> const FeatureMatrix& { return matrix; },
+                                meshes.data[m].labels, meshes.data[m].weights, meshes.fold[m]});
     return meshes;
 }
 

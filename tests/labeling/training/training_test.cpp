@@ -279,6 +279,30 @@ TEST_F(SlowTraining, MeshesThatLieAnyhowAreNot) {
     EXPECT_FALSE(report_.stages[1].kept);
 }
 
+TEST_F(SlowTraining, TheModelDoesNotDependOnHowManyFeaturesStayInMemory) {
+    const LabeledCorpus corpus = divided_balls(3, untouched);  // with coordinates, context and boundaries
+    const TrainOptions options = quick_options();
+    const fs::path path = fs::path(testing::TempDir()) / "exemplar_kept.safetensors";
+    save_model(path, train(corpus, options));
+    ASSERT_TRUE(uses_orientation(load_model(path)));
+    const std::string expected = read_file(path);
+
+    const std::vector<MeshFeatures> features = features_of(corpus, options.features);
+    const std::size_t one = 1'500'000 * features[0].unary.rows / 1000;  // more than one mesh takes, less than two
+    for (const std::size_t bytes : {std::size_t{0}, one, 100 * one}) {
+        std::size_t loads = 0, first = 0;
+        const auto load = [&](std::size_t mesh) {
+            ++loads;
+            return features[mesh];
+        };
+        TrainingFeatures some(features.size(), load, bytes, [&](std::size_t mesh) { EXPECT_EQ(mesh, first++); });
+        EXPECT_EQ(loads, 3U);
+        save_model(path, train_labeling(corpus, some, options, {scorer_, context_}, report_));
+        EXPECT_EQ(read_file(path), expected) << bytes;
+        EXPECT_EQ(loads > 3, bytes < 100 * one);
+    }
+}
+
 TEST_F(SlowTraining, OrientationIsUsedOrNotAsTheUserAsks) {
     const LabeledCorpus corpus = divided_balls(3, untouched);
     TrainOptions options = quick_options();

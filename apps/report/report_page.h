@@ -101,13 +101,12 @@ struct ReportDrawing {
 /// Writes one self-contained HTML file on the groups: a table that compares them, turnable views of labeled meshes
 /// (predicted labels, ground truth, errors, confidence, entropy, borders; the first three also side by side),
 /// confusion, scores, curves, features and timings. It opens from file:// in any browser with WebGL; without WebGL the
-/// tables remain. Positions are rounded to 1 / 65535 of the mesh's bounding box, confidences to 1 / 255. F triangles
-/// and V vertices cost (6 V + 11 F) * 4 / 3 bytes; 17 F instead of 11 F beyond 65536 vertices. Written atomically;
-/// equal arguments give equal bytes.
+/// tables remain. Positions are rounded to 1 / 65535 of the mesh's bounding box; confidences, entropies and borders to
+/// 1 / 255. F triangles and V vertices cost (6 V + 9 F) * 4 / 3 bytes, or (6 V + 15 F) * 4 / 3 beyond 65536 vertices;
+/// entropies and borders F * 4 / 3 more each. Written atomically; equal arguments give equal bytes.
 ///
-/// Throws UsageError naming the mesh or table if a label index or confidence is out of range, a size does not match,
-/// a coordinate is not finite, the rounds of a curve do not ascend, or there is no group; DataError if it cannot
-/// write.
+/// Throws UsageError naming the mesh or table if a label index or a share is out of range, a size does not match, a
+/// coordinate is not finite, the rounds of a curve do not ascend, or there is no group; DataError if it cannot write.
 void write_report_page(const std::filesystem::path& path, const std::string& title, std::span<const ReportData> groups,
                        std::span<const ReportDrawing> drawings = {});
 

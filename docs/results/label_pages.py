@@ -4,7 +4,8 @@
     docs/results/label_pages.py out/sb6/report.json > docs/results/labeling_sb6.md
 
 The page holds all rates per category beside those of the thesis, the scatter of the splits, what is confused most, and the
-features that boosting chose (thesis Fig. 3.5). With --peer in the evaluation, also the other program's rates, mesh by mesh.
+features that boosting chose (thesis Fig. 3.5). With --peer in the evaluation, also the other program's rates per category, and on how
+many meshes it is behind; --peer-name says whose labels these are.
 """
 import argparse
 import json
@@ -20,6 +21,8 @@ PROTOCOLS = {
 RATES = [('recognition_rate', 'RR', 100), ('without_cut', 'no cut', 100), ('segment_weighted_accuracy', 'SW', 100),
          ('rand_error', 'RI', 100), ('cut_discrepancy', 'CD', 1), ('hamming_distance', 'HD', 100), ('missing_rate', 'Rm', 100),
          ('false_alarm_rate', 'Rf', 100), ('global_consistency_error', 'GCE', 100), ('local_consistency_error', 'LCE', 100)]
+DEFAULTS = {'seed': 1, 'rounds': 300, 'patience': 50, 'stages': 3, 'bins': 128, 'rows': 4000, 'feature_fraction': 0.06,
+            'shrinkage': 0.5, 'linear': True, 'boundary': True, 'samples': 1000, 'orientation': 'auto'}
 VARIED = ('Bust', 'Bearing')  # categories whose labels differ so much from mesh to mesh that their rates are mostly chance
 
 
@@ -98,7 +101,18 @@ def families(report):
     return table(['family'] + [stage['stage'] for stage in stages], rows)
 
 
-def page(report):
+def changed_options(options):
+    """The options of the training that differ from the defaults, as in the command."""
+    words = ''
+    for name, usual in DEFAULTS.items():
+        if options[name] is False:
+            words += f' --no-{name}'
+        elif options[name] != usual:
+            words += f' --{name.replace("_", "-")} {options[name]}'
+    return words
+
+
+def page(report, peer_name):
     words, short = PROTOCOLS[report['protocol']]
     categories, options = report['categories'], report['options']
     splits = max(len(c['splits']) for c in categories)
@@ -106,7 +120,7 @@ def page(report):
     command = f'exemplar label evaluate --protocol {report["protocol"]} psb/labeled'
     if splits > 1 and report['protocol'] not in ('sb19', 'pfcn'):
         command += f' --splits {splits}'
-    command += f' --out out/{report["protocol"]}' + (' --peer authors' if 'peer' in report else '')
+    command += changed_options(options) + f' --out out/{report["protocol"]}' + (' --peer peer' if 'peer' in report else '')
     text = [f'# Labeling: {words} ({short})', '',
             f'Written by `docs/results/label_pages.py` from the report of this command ({trainings} trainings, '
             f'{sum(c["meshes"] for c in categories)} labelings of unseen meshes; version {options["training"]} of the training, '
@@ -117,9 +131,7 @@ def page(report):
             '(missing) and Rf (false alarms); GCE and LCE, global and local consistency error.', '',
             rates(report), '']
     if 'peer' in report:
-        text += ["## Beside the thesis authors' labels", '',
-                 'Ahead and behind count meshes by recognition rate. Their labels are of the same meshes, each labeled by a model of the',
-                 'nineteen others.', '', peer(report), '']
+        text += [f'## Beside {peer_name}', '', 'Ahead and behind count meshes by recognition rate.', '', peer(report), '']
     if splits > 1 and report['protocol'] != 'sb19':
         text += ['## Scatter of the splits', '', 'Means over the categories:', '', scatter(report), '']
     text += ['## What is confused most', '', confused(report), '', '## Chosen features', '',
@@ -130,13 +142,15 @@ def page(report):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('report', help='report.json in the --out folder of the evaluation')
-    path = parser.parse_args().report
+    parser.add_argument('--peer-name', default='another program', help="whose labels were the evaluation's --peer")
+    options = parser.parse_args()
+    path = options.report
     try:
         with open(path, encoding='utf-8') as file:
             report = json.load(file)
         if report['protocol'] not in PROTOCOLS:
             sys.exit(f'{path}: is the report of no protocol; call `exemplar label evaluate --protocol`')
-        print(page(report), end='')
+        print(page(report, options.peer_name), end='')
     except (OSError, KeyError, TypeError, json.JSONDecodeError) as error:
         sys.exit(f'{path}: is no report of `exemplar label evaluate` ({error!r})')
 

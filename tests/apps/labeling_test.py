@@ -71,6 +71,9 @@ class Train(WithModel):
         self.assertTrue(all(stage.startswith("unary") for stage in stages), stages)
         self.call("label", "apply", "without_boundary", self.cup, "--out", "plain")
 
+    def test_the_model_does_not_depend_on_memory(self):
+        self.assertEqual(self.train("cups", "little", "--feature-memory", "0"), self.train("cups", "much", "--feature-memory", "9"))
+
     def test_one_mesh_is_enough_and_one_label_is_not(self):
         self.train(self.cup, "one")
         single = self.folder / "single"

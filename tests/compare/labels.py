@@ -31,7 +31,7 @@ from sklearn.model_selection import ParameterGrid
 import programs
 from learners import PEERS, Known, as_scores
 
-# The training meshes of the first table of docs/results/labeling.md; every fourth of the other fourteen is tested on.
+# The training meshes that docs/results/labeling.md lists; every fourth of the other fourteen is tested on.
 TRAINING = {
     "Human": (3, 5, 9, 10, 13, 15), "Cup": (27, 32, 34, 35, 38, 40), "Glasses": (41, 43, 50, 51, 58, 60),
     "Ant": (84, 88, 89, 91, 96, 100), "Octopus": (125, 127, 133, 134, 135, 140), "Table": (145, 146, 148, 154, 158, 160),

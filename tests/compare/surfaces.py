@@ -7,6 +7,7 @@ import hashlib
 import os
 import pathlib
 import tempfile
+import zipfile
 
 import numpy
 import scipy.linalg
@@ -238,5 +239,5 @@ class Surface:
         try:
             with numpy.load(kept) as arrays:
                 return Surface(arrays)
-        except (OSError, ValueError, KeyError):
+        except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile):
             raise DataError(kept, "cannot be read; remove it") from None

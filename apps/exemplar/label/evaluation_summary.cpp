@@ -103,10 +103,9 @@ void print_rate_table(const Json& categories, const Json& report) {
         print_rates(width, category["category"], std::to_string(category["meshes"].get<std::size_t>()), category);
     if (categories.size() > 1) print_rates(width, "mean", "", report);
     fmt::print(
-        "In %, but CD. RR recognition rate, SW segment-weighted accuracy, no cut RR of the classifiers alone. Against "
-        "human\nsegmentations: RI err Rand index error,\nCD cut discrepancy, HD Hamming distance (mean of miss, "
-        "missing rate, and false, false alarm rate), "
-        "GCE and LCE global\nand local consistency error.\n");
+        "In %, but CD. RR recognition rate, SW segment-weighted accuracy, no cut RR of the classifiers alone.\n"
+        "Against human segmentations: RI err Rand index error, CD cut discrepancy, HD Hamming distance (mean of\n"
+        "miss, missing rate, and false, false alarm rate), GCE and LCE global and local consistency error.\n");
 }
 
 void print_shared_labels(const Json& category) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "host/core/interrupt.h"
@@ -12,8 +11,10 @@
 
 namespace exemplar {
 
+namespace fs = std::filesystem;
+
 std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const FeatureOptions& options,
-                                      const std::filesystem::path& cache) {
+                                      const fs::path& cache) {
     Progress progress("computing features", corpus.meshes.size());
     std::vector<MeshFeatures> features;
     for (const LabeledMesh& mesh : corpus.meshes) {
@@ -24,23 +25,26 @@ std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const Feature
     return features;
 }
 
-TrainingFeatures training_features(const LabeledCorpus& corpus, const FeatureOptions& options,
-                                   const std::filesystem::path& cache, double gigabytes) {
+TrainingFeatures training_features(const LabeledCorpus& corpus, const FeatureOptions& options, const fs::path& cache,
+                                   double gigabytes) {
     Progress progress("computing features", corpus.meshes.size());
-    const auto load = [&corpus, options, cache](std::size_t mesh) {
+    TrainingFeatures::Source source;
+    source.load = [&corpus, options, cache](std::size_t mesh) {
         check_interrupt();
         return cached_features(corpus.meshes[mesh].mesh, options, cache);
     };
-    const std::size_t bytes =
-        cache.empty() ? std::numeric_limits<std::size_t>::max() : static_cast<std::size_t>(gigabytes * 1e9);
-    return {corpus.meshes.size(), load, bytes,
+    source.is_stored = [&corpus, options, cache](std::size_t mesh) {
+        return !cache.empty() && fs::exists(cache / feature_entry_name(corpus.meshes[mesh].mesh, options));
+    };
+    return {corpus.meshes.size(), std::move(source), static_cast<std::size_t>(gigabytes * 1e9),
             [&](std::size_t mesh) { progress.advance(1, corpus.meshes[mesh].name); }};
 }
 
 void add_feature_memory_option(Command& command, double& gigabytes) {
     command
-        .add_option("--feature-memory", gigabytes,
-                    "gigabytes of features to keep in memory; those of further meshes are read from --cache again")
+        .add_option(
+            "--feature-memory", gigabytes,
+            "GB of training meshes' features to keep in memory; others are read from --cache again, if there is one")
         ->capture_default_str()
         ->check(in_range(0.0, 1e6));
 }

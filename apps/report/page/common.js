@@ -13,8 +13,8 @@ const MODES = { compare: 'Side by side', predicted: 'Prediction', truth: 'Ground
 // Modes that shade faces by a number from 0 to 1: which number is dark, what both ends mean, and what the number is.
 const SHADES = {
   confidence: { darkest: 0, dark: 'unsure, 0%', pale: '100%, sure', what: 'Probability of the predicted label' },
-  entropy: { darkest: 1, dark: 'knows nothing, 1', pale: '0, sure', what: 'Entropy of the probabilities of all labels, 1 if they are equal' },
-  border: { darkest: 1, dark: 'border, 100%', pale: '0%', what: 'Probability that a part ends at the face' },
+  entropy: { darkest: 1, dark: 'unsure, 1', pale: '0, sure', what: 'Entropy of the probabilities of all labels, 1 if they are equal' },
+  border: { darkest: 1, dark: 'border, 100%', pale: '0%', what: 'Largest probability of a border at an edge of the face' },
 };
 const COMPARED = ['predicted', 'truth', 'errors'];
 const state = { group: null, mode: 'compare', highlight: -1, linked: false, views: [] };

@@ -121,6 +121,14 @@ std::vector<float> orient(const LabelingModel& model, Meshes meshes) {
     return turned;
 }
 
+/// The largest value of the edges of each face; 0 for a face without interior edges.
+std::vector<float> largest_of_face(const MeshFeatures& features, std::span<const float> of_edge) {
+    std::vector<float> largest(features.face_area.size(), 0);
+    for (std::size_t e = 0; e < features.edges.size(); ++e)
+        for (const std::uint32_t f : features.edges[e]) largest[f] = std::max(largest[f], of_edge[e]);
+    return largest;
+}
+
 /// Runs all classifiers, on the device where the meshes fit.
 std::vector<FaceScores> score_oriented(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
     if (!backend.cascade) return score_in_stages(model, meshes, backend);
@@ -222,10 +230,7 @@ FaceLabeling cut_faces(const LabelingModel& model, const MeshFeatures& features,
     result.confidence.reserve(result.label.size());
     for (std::size_t f = 0; f < result.label.size(); ++f)
         result.confidence.push_back(result.probabilities[f * classes + result.label[f]]);
-    result.border.assign(result.label.size(), 0);
-    for (std::size_t e = 0; e < features.edges.size(); ++e)
-        for (const std::uint32_t f : features.edges[e])
-            result.border[f] = std::max(result.border[f], scores.boundary[e]);
+    if (!model.pairwise.empty()) result.border = largest_of_face(features, scores.boundary);
     result.seconds.emplace_back("cut", watch.wall());
     return result;
 }

@@ -39,11 +39,11 @@ struct LabelingBackend {
 
 /// Result of inference for one mesh, per triangle.
 struct FaceLabeling {
-    std::vector<std::int32_t> label;                      ///< after the CRF and the merging of small pieces
-    std::vector<float> probabilities;                     ///< faces x classes, from the unary cascade
-    std::vector<float> confidence;                        ///< probability of the assigned label
-    std::vector<float> border;                            ///< largest P(boundary) of the face's edges; 0 without any
-    float turned = 0;                                     ///< see FaceScores
+    std::vector<std::int32_t> label;   ///< after the CRF and the merging of small pieces
+    std::vector<float> probabilities;  ///< faces x classes, from the unary cascade
+    std::vector<float> confidence;     ///< probability of the assigned label
+    std::vector<float> border;  ///< largest P(boundary) of the face's interior edges; empty without such a classifier
+    float turned = 0;           ///< see FaceScores
     std::vector<std::pair<std::string, double>> seconds;  ///< wall time: unary, pairwise, cut
 };
 

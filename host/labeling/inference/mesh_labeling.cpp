@@ -84,7 +84,7 @@ FaceLabeling finish_labeling(const LabelingModel& model, const WorkingFeatures& 
     labeling.seconds.emplace(labeling.seconds.begin(), "features", mesh.seconds);
     labeling.label = per_original_face(labeling.label, mesh.face_of);
     labeling.confidence = per_original_face(labeling.confidence, mesh.face_of);
-    labeling.border = per_original_face(labeling.border, mesh.face_of);
+    if (!labeling.border.empty()) labeling.border = per_original_face(labeling.border, mesh.face_of);
     labeling.probabilities = per_original_face(labeling.probabilities, mesh.face_of, model.class_count());
     return labeling;
 }

@@ -53,8 +53,9 @@ struct LabelingModel {
     std::size_t class_count() const { return label_names.size(); }
 };
 
-/// Other versions are refused: 1 had no linear classifiers, 2 clamped their features at five deviations instead of two.
-constexpr int k_model_format_version = 3;
+/// Other versions are refused: 1 had no linear classifiers, 2 clamped their features at five deviations instead of two,
+/// 3 had no classifier that tells how a mesh must be turned.
+constexpr int k_model_format_version = 4;
 
 /// Writes the whole model to a safetensors file; equal models give equal bytes.
 void save_model(const std::filesystem::path& path, const LabelingModel& model);

@@ -141,8 +141,8 @@ FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingIt
     return result;
 }
 
-/// The columns that a cascade sees of the meshes. What is not of the mesh alone is appended when it is needed: the
-/// features of a mesh may just have been read again.
+/// The feature columns of one cascade. Coordinates and context are appended when a mesh is asked for, because a mesh
+/// that was read again lacks them.
 struct CascadeColumns {
     TrainingFeatures& features;
     FeatureMatrix MeshFeatures::*matrix;
@@ -153,19 +153,19 @@ struct CascadeColumns {
     /// stage.
     std::function<void(MeshFeatures&, std::span<const float> probabilities)> add_context = {};
     const PerMesh* probabilities = nullptr;  ///< of the last stage; null in the first stage
-    std::vector<bool> is_new = {};           ///< per mesh: its contextual columns are still those of an earlier stage
+    std::vector<bool> is_stale = {};         ///< per mesh: its contextual columns are those of an earlier stage
 
     void begin_stage(const PerMesh& of_last_stage) {
         probabilities = &of_last_stage;
-        is_new.assign(features.count(), true);
+        is_stale.assign(features.count(), true);
     }
     std::size_t count() const { return base + (probabilities ? context : 0); }
     const FeatureMatrix& of(std::size_t m) {
         MeshFeatures& mesh = features.at(m);
         if (base > of_mesh && (mesh.*matrix).cols() < base) set_orientation(mesh, of_mesh, Eigen::Matrix3f::Identity());
-        if (probabilities && (is_new[m] || (mesh.*matrix).cols() < count())) {
+        if (probabilities && (is_stale[m] || (mesh.*matrix).cols() < count())) {
             add_context(mesh, (*probabilities)[m]);
-            is_new[m] = false;
+            is_stale[m] = false;
         }
         return mesh.*matrix;
     }
@@ -445,7 +445,6 @@ OrientationUse orientation_use(const std::string& name) {
 
 LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features,
                              const TrainOptions& options, const LabelingBackend& backend, TrainReport& report) {
-    for (MeshFeatures& mesh : features) drop_context_columns(mesh);
     TrainingFeatures in_memory(features);
     return train_labeling(corpus, in_memory, options, backend, report);
 }
@@ -454,6 +453,7 @@ LabelingModel train_labeling(const LabeledCorpus& corpus, TrainingFeatures& feat
                              const LabelingBackend& backend, TrainReport& report) {
     require_trainable(corpus, features.count());
     report = {};
+    features.drop_appended();
     LabelingModel model;
     model.label_names = corpus.names;
     for (std::size_t c = 0; c < corpus.names.size(); ++c) model.label_colors.push_back(label_color(c));

@@ -12,13 +12,18 @@ namespace exemplar {
 /// each of the others is read again whenever it is needed.
 class TrainingFeatures {
   public:
-    /// Reads or computes the features of a mesh; they are the same every time.
-    using Load = std::function<MeshFeatures(std::size_t mesh)>;
+    /// Where features can be had again.
+    struct Source {
+        std::function<MeshFeatures(std::size_t mesh)> load;  ///< reads or computes them: the same every time
+        std::function<bool(std::size_t mesh)> is_stored;     ///< whether `load` would read them, after the first time
+    };
 
     /// All stay in memory, in `features`, which must outlive this; training appends columns to them.
     explicit TrainingFeatures(std::vector<MeshFeatures>& features);
-    /// Loads each mesh once, in order, and keeps the first ones, up to `bytes` in all. `loaded` is called after each.
-    TrainingFeatures(std::size_t meshes, Load load, std::size_t bytes, const std::function<void(std::size_t)>& loaded);
+    /// Loads each mesh once, in order, and keeps those that fit into `bytes` together, and those that are not stored.
+    /// The columns that training appends are not counted. `loaded` is called after each mesh.
+    TrainingFeatures(std::size_t meshes, Source source, std::size_t bytes,
+                     const std::function<void(std::size_t)>& loaded);
     TrainingFeatures(const TrainingFeatures&) = delete;
     TrainingFeatures& operator=(const TrainingFeatures&) = delete;
 
@@ -29,14 +34,19 @@ class TrainingFeatures {
     /// Returns what the graph cut knows of a mesh: the areas of its faces, and its edges with their lengths and angles.
     /// It is always in memory; other fields may be empty.
     const MeshFeatures& outline(std::size_t mesh) const { return features_[mesh]; }
+    /// Removes the columns that an earlier training appended.
+    void drop_appended();
 
   private:
     std::vector<MeshFeatures> own_;
-    std::vector<MeshFeatures>& features_;  ///< from kept_ on, outlines only
-    std::size_t kept_;
-    Load load_;
+    std::vector<MeshFeatures>& features_;  ///< outlines only of meshes that are not kept
+    std::vector<bool> is_kept_;
+    Source source_;
     std::optional<std::size_t> read_again_;  ///< the mesh of again_
     MeshFeatures again_;
 };
+
+/// Returns the bytes of the large arrays of a mesh's features.
+std::size_t feature_bytes(const MeshFeatures& mesh);
 
 }  // namespace exemplar

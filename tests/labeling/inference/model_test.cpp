@@ -9,6 +9,7 @@
 #include "host/core/files.h"
 #include "host/core/random.h"
 #include "host/data/safetensors.h"
+#include "host/labeling/inference/mesh_turn.h"
 
 namespace exemplar {
 namespace {
@@ -59,10 +60,21 @@ LabelingModel small_model() {
     return model;
 }
 
+/// Knows faces also by where they are.
+LabelingModel oriented_model() {
+    LabelingModel model = small_model();
+    for (const std::string& name : orientation_names()) model.unary_names.push_back(name);
+    model.linear = {{}, linear(75)};
+    model.unoriented = classifier(2, 1);
+    model.unoriented_linear = linear(2);
+    return model;
+}
+
 /// Saves a model after changing its file and returns the error of loading it.
-std::string error_after(const std::string& name, const std::function<void(TensorFile&)>& change) {
+std::string error_after(const std::string& name, const std::function<void(TensorFile&)>& change,
+                        const LabelingModel& model = small_model()) {
     const fs::path path = temporary(name);
-    save_model(path, small_model());
+    save_model(path, model);
     TensorFile file = read_safetensors(path);
     change(file);
     write_safetensors(path, file);
@@ -98,6 +110,26 @@ TEST(LabelingModelFile, RoundTripKeepsEverythingAndTheBytes) {
     EXPECT_EQ(model.smallest_component, small_model().smallest_component);
     save_model(again, model);
     EXPECT_EQ(read_file(path), read_file(again));
+}
+
+TEST(LabelingModelFile, AModelWithCoordinatesKeepsTheStageWithoutThem) {
+    const fs::path path = temporary("oriented.safetensors"), again = temporary("oriented_again.safetensors");
+    save_model(path, oriented_model());
+    const LabelingModel model = load_model(path);
+    EXPECT_EQ(model.unoriented.stumps.stumps.front().feature, 1U);
+    EXPECT_EQ(model.unoriented_linear.classifier.weight, linear(2).classifier.weight);
+    save_model(again, model);
+    EXPECT_EQ(read_file(path), read_file(again));
+
+    using File = TensorFile;
+    const std::vector<std::function<void(File&)>> changes{
+        [](File& f) { f.tensors.erase("unoriented.feature"); },
+        [](File& f) { f.add("unoriented.feature", {1}, std::vector<std::uint32_t>{2}); },  // a coordinate
+        [](File& f) { f.add("unoriented.linear.mean", {2}, std::vector<float>(2, NAN)); },
+        [](File& f) { f.tensors.erase("unoriented.linear.constant"); },
+    };
+    for (std::size_t i = 0; i < changes.size(); ++i)
+        EXPECT_NE(error_after("unoriented" + std::to_string(i), changes[i], oriented_model()), "no error") << i;
 }
 
 TEST(LabelingModelFile, NamesOfMeshesMayBeInAnyEncoding) {

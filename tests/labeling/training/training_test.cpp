@@ -279,28 +279,56 @@ TEST_F(SlowTraining, MeshesThatLieAnyhowAreNot) {
     EXPECT_FALSE(report_.stages[1].kept);
 }
 
-TEST_F(SlowTraining, TheModelDoesNotDependOnHowManyFeaturesStayInMemory) {
-    const LabeledCorpus corpus = divided_balls(3, untouched);  // with coordinates, context and boundaries
-    const TrainOptions options = quick_options();
-    const fs::path path = fs::path(testing::TempDir()) / "exemplar_kept.safetensors";
-    save_model(path, train(corpus, options));
-    ASSERT_TRUE(uses_orientation(load_model(path)));
-    const std::string expected = read_file(path);
+/// Counts how often the features of each mesh are loaded.
+struct CountedLoads {
+    std::vector<MeshFeatures> features;
+    std::vector<int> loads = std::vector<int>(features.size(), 0);
+    bool are_stored = true;
 
-    const std::vector<MeshFeatures> features = features_of(corpus, options.features);
-    const std::size_t one = 1'500'000 * features[0].unary.rows / 1000;  // more than one mesh takes, less than two
-    for (const std::size_t bytes : {std::size_t{0}, one, 100 * one}) {
-        std::size_t loads = 0, first = 0;
-        const auto load = [&](std::size_t mesh) {
-            ++loads;
+    TrainingFeatures training_features(std::size_t bytes) {
+        const auto load = [this](std::size_t mesh) {
+            ++loads[mesh];
             return features[mesh];
         };
-        TrainingFeatures some(features.size(), load, bytes, [&](std::size_t mesh) { EXPECT_EQ(mesh, first++); });
-        EXPECT_EQ(loads, 3U);
-        save_model(path, train_labeling(corpus, some, options, {scorer_, context_}, report_));
-        EXPECT_EQ(read_file(path), expected) << bytes;
-        EXPECT_EQ(loads > 3, bytes < 100 * one);
+        return {features.size(), {load, [this](std::size_t) { return are_stored; }}, bytes, [](std::size_t) {}};
     }
+};
+
+TEST_F(SlowTraining, TheModelDoesNotDependOnHowManyFeaturesStayInMemory) {
+    const auto anyhow = [](std::size_t i) {
+        return Eigen::AngleAxisf(static_cast<float>(i), Eigen::Vector3f(1, 0.3F, 0.1F).normalized()).toRotationMatrix();
+    };
+    const fs::path path = fs::path(testing::TempDir()) / "exemplar_kept.safetensors";
+    const TrainOptions options = quick_options();
+    // With coordinates; with coordinates that are tried and left out; one mesh, cut into patches.
+    for (const LabeledCorpus& corpus :
+         {divided_balls(3, untouched), divided_balls(3, anyhow), divided_balls(1, untouched)}) {
+        save_model(path, train(corpus, options));
+        const std::string expected = read_file(path);
+        const std::vector<MeshFeatures> features = features_of(corpus, options.features);
+        const std::size_t one = feature_bytes(features[0]), count = features.size();
+        for (const std::size_t bytes : {std::size_t{0}, one + one / 2, 100 * one}) {
+            CountedLoads counted{features};
+            TrainingFeatures some = counted.training_features(bytes);
+            for (int again = 0; again < 2; ++again) {
+                save_model(path, train_labeling(corpus, some, options, {scorer_, context_}, report_));
+                EXPECT_EQ(read_file(path), expected) << bytes;
+            }
+            EXPECT_EQ(counted.loads.front() > 1, bytes == 0) << bytes;
+            if (count > 1) {
+                EXPECT_EQ(counted.loads.back() > 1, bytes < 100 * one) << bytes;
+            }
+        }
+    }
+}
+
+TEST_F(SlowTraining, FeaturesThatAreNotStoredStayInMemory) {
+    const LabeledCorpus corpus = divided_balls(2, untouched);
+    CountedLoads counted{features_of(corpus, quick_options().features)};
+    counted.are_stored = false;
+    TrainingFeatures all = counted.training_features(0);
+    train_labeling(corpus, all, quick_options(), {scorer_, context_}, report_);
+    EXPECT_EQ(counted.loads, (std::vector<int>{1, 1}));
 }
 
 TEST_F(SlowTraining, OrientationIsUsedOrNotAsTheUserAsks) {

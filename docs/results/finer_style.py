@@ -6,7 +6,7 @@
 
 Takes each mesh of the category of which a person's segmentation cuts the part in three: three segments that each lie in the
 part for the most, and each hold an eighth of it. Where several people did so, the one whose smallest segment is largest counts.
-The segments are called front, middle and rear, by their distance from the head; what remains of the part has no label. All
+The segments are called front, middle and rear, by their distance from the head; what remains of the part joins the nearest. All
 other labels stay. Half of the meshes, drawn at random, are to train on. Needs NumPy (Debian: python3-numpy)."""
 import argparse
 import pathlib
@@ -60,9 +60,10 @@ def finer(mesh, segmentations, part, head):
         return None
     middle_of = lambda faces: numpy.average(center[faces], axis=0, weights=area[faces])
     best.sort(key=lambda faces: numpy.linalg.norm(middle_of(faces) - middle_of(from_head)))
-    label[in_part] = ''
-    for name, faces in zip(NAMES, best):
-        label[faces] = name
+    known = numpy.flatnonzero(best[0] | best[1] | best[2])
+    name_of_known = numpy.select([faces[known] for faces in best], NAMES)
+    for face in numpy.flatnonzero(in_part):
+        label[face] = name_of_known[numpy.linalg.norm(center[known] - center[face], axis=1).argmin()]
     return label
 
 

@@ -138,7 +138,8 @@ TEST(Seg, ErrorsNameFileAndLine) {
 /// Reads every mesh, label and segment file of the benchmark, if there is one.
 TEST(SlowBenchmarkFiles, AllCanBeRead) {
     const char* const data = std::getenv("EXEMPLAR_DATA");
-    if (!data) GTEST_SKIP() << "set EXEMPLAR_DATA to the folder that holds labeled/ and seg/ (docs/testing.md)";
+    if (!data || !*data)
+        GTEST_SKIP() << "set EXEMPLAR_DATA to the folder that holds labeled/ and seg/ (docs/testing.md)";
     const std::filesystem::path labeled = std::filesystem::path(data) / "labeled";
     ASSERT_TRUE(std::filesystem::is_directory(labeled)) << labeled << " is no folder of meshes with labels";
     std::size_t meshes = 0;

@@ -196,10 +196,12 @@ TEST(ReportPage, MeshBlocksDecodeToTheMesh) {
     EXPECT_EQ(description["faces"], mesh.face_count());
     EXPECT_EQ(description["truth"], true);
     EXPECT_EQ(description["unlabeled"], true);
+    EXPECT_EQ(description["hasEntropy"], true);
+    EXPECT_EQ(description["hasBorder"], true);
     EXPECT_EQ(description["rate"], 0.8);
 
     BlockReader block{decode_base64(mesh_text(page, "mesh-0-0"))};
-    ASSERT_EQ(block.bytes.size(), 6 * mesh.vertex_count() + 9 * mesh.face_count());
+    ASSERT_EQ(block.bytes.size(), 6 * mesh.vertex_count() + 11 * mesh.face_count());
     expect_positions(block, description, mesh);
     expect_faces(block, mesh, 2);
     for (const std::int32_t label : item.predicted) ASSERT_EQ(block.take(1), label);

@@ -252,7 +252,7 @@ TEST(SegmentationMetrics, TheTableGivesWhatTheDefinitionsSay) {
 /// People agree with each other about as well as Chen et al. report.
 TEST(SegmentationMetrics, PeopleAgreeOnRealMeshes) {
     const char* data = std::getenv("EXEMPLAR_DATA");
-    if (data == nullptr)
+    if (data == nullptr || *data == 0)
         GTEST_SKIP() << "set EXEMPLAR_DATA to the folder that holds labeled/ and seg/ (docs/testing.md)";
     const std::filesystem::path folder = data;
     for (const auto& [path, name] : {std::pair{"labeled/Ant/81.off", "81"}, {"labeled/Human/3.off", "3"}}) {

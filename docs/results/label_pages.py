@@ -130,6 +130,8 @@ def page(report, peer_name):
             'accuracy. Against all human segmentations: RI, Rand index error; CD, cut discrepancy; HD, Hamming distance, the mean of Rm',
             '(missing) and Rf (false alarms); GCE and LCE, global and local consistency error.', '',
             rates(report), '']
+    if report['protocol'] == 'pfcn':
+        text += ['The thesis draws twelve training meshes at random; the test meshes here are those of ShapePFCN.', '']
     if 'peer' in report:
         text += [f'## Beside {peer_name}', '', 'Ahead and behind count meshes by recognition rate.', '', peer(report), '']
     if splits > 1 and report['protocol'] != 'sb19':

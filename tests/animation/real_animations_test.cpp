@@ -48,7 +48,7 @@ void expect_not_collapsed(const Animation& animation) {
 
 TEST(SlowRealAnimations, HaveTheirCountsAndAFirstFrame) {
     const char* const data = std::getenv("EXEMPLAR_DATA");
-    if (!data || !fs::is_directory(fs::path(data) / "anim"))
+    if (data == nullptr || *data == 0 || !fs::is_directory(fs::path(data) / "anim"))
         GTEST_SKIP() << "set EXEMPLAR_DATA to a folder that holds anim/ (docs/testing.md)";
     for (const Expected& expected : k_expected) {
         SCOPED_TRACE(expected.path);

@@ -230,7 +230,8 @@ Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, 
     const auto score = [&](const std::vector<std::int32_t>& truth, const std::vector<std::int32_t>& predicted) {
         return score_labeling(areas, truth, predicted, corpus.names.size());
     };
-    Json json = describe_scores(score(rated, labeling.label),
+    const MeshScore all = score(item.label, labeling.label);
+    Json json = describe_scores(task.other_category ? score(rated, labeling.label) : all,
                                 score(rated, most_probable_labels(labeling.probabilities, model.class_count())),
                                 score_segmentation(item.mesh, labeling.label, human_segmentations(task.humans, item)));
     seconds["scores"] = scoring.wall(), seconds["all"] = watch.wall();
@@ -238,7 +239,7 @@ Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, 
                  {"mesh", item.name},
                  {"path", mesh.string()},
                  {"names", corpus.names},
-                 {"confusion", score(item.label, labeling.label).confusion},
+                 {"confusion", all.confusion},
                  {"seconds", seconds}});
     write_json(scores, json);
     return json;

@@ -22,8 +22,9 @@ std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const Feature
 
 /// Features of training meshes that stay in memory, unless the user says otherwise.
 constexpr double k_feature_gigabytes = 0.5;
-/// The same, but those that do not fit into so much memory are read from the cache again whenever training needs them.
-/// What the cache does not have stays in memory. The corpus must outlive the result.
+/// The same, but only so many gigabytes stay in memory; the features of the other meshes are read from the cache
+/// whenever training needs them. Features that the cache could not store stay in memory too. The corpus must outlive
+/// the result, which refers to its meshes.
 TrainingFeatures training_features(const LabeledCorpus& corpus, const FeatureOptions& options,
                                    const std::filesystem::path& cache, double gigabytes);
 /// Adds --feature-memory, the gigabytes of training_features, to a subcommand.

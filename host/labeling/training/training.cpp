@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <functional>
-#include <limits>
 #include <numeric>
-#include <optional>
 
 #include "host/core/errors.h"
 #include "host/core/progress.h"
@@ -16,9 +13,8 @@
 #include "host/core/stopwatch.h"
 #include "host/data/result_cache.h"
 #include "host/labeling/features/edge_context.h"
-#include "host/labeling/inference/cascade_prediction.h"
 #include "host/labeling/inference/mesh_turn.h"
-#include "host/labeling/training/fold_boosting.h"
+#include "host/labeling/training/cascade_training.h"
 
 namespace exemplar {
 namespace {
@@ -36,8 +32,6 @@ constexpr std::size_t k_min_oriented_meshes = 3;  ///< to tell that they are ori
 constexpr float k_sliver = 0.02F;                 ///< share of a label's largest piece in the mesh
 constexpr std::size_t k_no_mesh = static_cast<std::size_t>(-1);
 constexpr std::uint64_t k_unary_task = 1000, k_pairwise_task = 2000, k_fold_task = 1;
-
-using PerMesh = std::vector<std::vector<float>>;
 
 void require_trainable(const LabeledCorpus& corpus, std::size_t feature_sets) {
     if (corpus.meshes.empty()) throw DataError("there are no training meshes");
@@ -124,104 +118,6 @@ void favor_rare_labels(const LabeledCorpus& corpus, std::vector<std::vector<floa
         for (std::size_t f = 0; f < weights[m].size(); ++f)
             if (const std::int32_t label = corpus.meshes[m].label[f]; label >= 0 && weights[m][f] > 0)
                 weights[m][f] /= static_cast<float>(std::sqrt(total[static_cast<std::size_t>(label)]));
-}
-
-/// Runs one boosting task over all meshes, shows its progress and adds it to the report.
-FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingItems> items, FoldBoostingOptions options,
-                             const TrainOptions& train, StumpScorer& scorer, TrainReport& report) {
-    options.rounds = train.rounds, options.bins = train.bins;
-    options.rows_per_mesh = train.rows_per_mesh;
-    options.feature_fraction = train.feature_fraction, options.shrinkage = train.shrinkage;
-    Progress progress("training " + what + " (rounds)", (options.folds + 1) * options.rounds);
-    const Stopwatch watch;
-    FoldBoostingResult result = boost_with_folds(items, options, scorer, [&] { progress.advance(); });
-    progress.finish();
-    report.stages.push_back(
-        {what, result.rounds, result.loss, result.stumps_loss, result.error, true, result.curve, watch.wall()});
-    return result;
-}
-
-/// The feature columns of one cascade. Coordinates and context are appended when a mesh is asked for, because a mesh
-/// that was read again lacks them.
-struct CascadeColumns {
-    TrainingFeatures& features;
-    FeatureMatrix MeshFeatures::*matrix;
-    std::size_t of_mesh;         ///< columns of the mesh alone
-    std::size_t base = of_mesh;  ///< with coordinates, if the cascade has them
-    std::size_t context = 0;     ///< contextual columns of the stages after the first
-    /// Appends the contextual columns of a mesh, from the out-of-fold probabilities (items x classes) of the last
-    /// stage.
-    std::function<void(MeshFeatures&, std::span<const float> probabilities)> add_context = {};
-    const PerMesh* probabilities = nullptr;  ///< of the last stage; null in the first stage
-    std::vector<bool> is_stale = {};         ///< per mesh: its contextual columns are those of an earlier stage
-
-    void begin_stage(const PerMesh& of_last_stage) {
-        probabilities = &of_last_stage;
-        is_stale.assign(features.count(), true);
-    }
-    std::size_t count() const { return base + (probabilities ? context : 0); }
-    const FeatureMatrix& of(std::size_t m) {
-        MeshFeatures& mesh = features.at(m);
-        if (base > of_mesh && (mesh.*matrix).cols() < base) set_orientation(mesh, of_mesh, Eigen::Matrix3f::Identity());
-        if (probabilities && (is_stale[m] || (mesh.*matrix).cols() < count())) {
-            add_context(mesh, (*probabilities)[m]);
-            is_stale[m] = false;
-        }
-        return mesh.*matrix;
-    }
-};
-
-/// A cascade to train. Each stage after the first also sees contextual features, computed from the predictions of the
-/// stage before.
-struct Cascade {
-    std::string name;
-    std::size_t max_cascade_stages;
-    double max_loss_ratio;     ///< a stage is kept if its loss is below this factor times that of the stage before
-    FoldBoostingOptions task;  ///< its number of features and seed are set per stage
-    CascadeColumns& columns;
-    std::vector<BoostingItems> items = {};         ///< per mesh
-    std::optional<FoldBoostingResult> first = {};  ///< the first stage, if it is trained already
-
-    void add_items(std::span<const std::int32_t> label, std::span<const float> weight,
-                   std::span<const std::uint8_t> fold) {
-        items.push_back({[&columns = columns, m = items.size()]() -> const FeatureMatrix& { return columns.of(m); },
-                         label, weight, fold});
-    }
-};
-
-/// Trains stage after stage until the out-of-fold loss rises; returns the out-of-fold probabilities of the last kept
-/// one. If `averaged` is given, sets it to the labels of one fold only, which are averaged over the stages (see
-/// CascadePrediction).
-PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer& scorer,
-                      std::vector<CalibratedStumps>& classifiers, std::vector<LinearExpert>& linear,
-                      std::vector<std::uint32_t>* averaged, TrainReport& report) {
-    PerMesh kept;
-    std::vector<CascadePrediction> predictions;
-    double last_loss = std::numeric_limits<double>::infinity();
-    const std::uint64_t first_seed = cascade.task.seed;
-    for (std::size_t stage = 0; stage < cascade.max_cascade_stages; ++stage) {
-        if (stage > 0) cascade.columns.begin_stage(kept);
-        cascade.task.features = cascade.columns.count();
-        cascade.task.seed = first_seed + stage;
-        FoldBoostingResult result = stage == 0 && cascade.first
-                                        ? std::move(*cascade.first)
-                                        : run_stage(fmt::format("{} {}", cascade.name, stage), cascade.items,
-                                                    cascade.task, options, scorer, report);
-        if (stage > 0 && !(result.loss < cascade.max_loss_ratio * last_loss)) {
-            report.stages.back().kept = false;
-            break;
-        }
-        last_loss = result.loss;
-        kept = std::move(result.out_of_fold);
-        if (averaged && stage == 0) {
-            *averaged = result.single_fold_labels;
-            predictions.assign(kept.size(), CascadePrediction(*averaged, cascade.task.classes));
-        }
-        for (std::size_t m = 0; m < predictions.size(); ++m) predictions[m].add_stage(kept[m]);
-        classifiers.push_back(std::move(result.classifier));
-        linear.push_back(std::move(result.linear));
-    }
-    return kept;
 }
 
 /// Trains the first unary stage without and with the coordinates of the face centers (App. A.1h), and keeps the better

@@ -8,14 +8,14 @@
 
 namespace exemplar {
 
-/// The features of the meshes that a model is trained on. Those that fit into the memory that they may take stay there;
-/// each of the others is read again whenever it is needed.
+/// The features of the meshes that a model is trained on. They may take a limited amount of memory: the features of
+/// some meshes stay there, those of the others are loaded whenever they are needed.
 class TrainingFeatures {
   public:
-    /// Where features can be had again.
+    /// Loads features, also more than once.
     struct Source {
         std::function<MeshFeatures(std::size_t mesh)> load;  ///< reads or computes them: the same every time
-        std::function<bool(std::size_t mesh)> is_stored;     ///< whether `load` would read them, after the first time
+        std::function<bool(std::size_t mesh)> is_stored;     ///< whether a second `load` would only read them
     };
 
     /// All stay in memory, in `features`, which must outlive this; training appends columns to them.

@@ -94,7 +94,7 @@ def read_labels(path, faces):
 def write_labels(path, labels):
     """Writes such a file, complete or not at all."""
     def write(file):
-        for name in sorted(set(labels)):
+        for name in sorted(set(labels) - {""}):
             file.write(f"{name}\n{' '.join(map(str, numpy.flatnonzero(labels == name) + 1))}\n")
     write_atomically(path, write)
 

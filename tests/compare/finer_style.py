@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Writes labels of a finer style: a part in three, as some people cut it in the Princeton benchmark (thesis Fig. 3.7).
 
-    docs/results/finer_style.py psb FourLeg torso finer
+    tests/compare/finer_style.py psb FourLeg torso finer
     exemplar label evaluate --train finer/train.txt --test finer/test.txt --labels finer --out out/finer
 
 Takes each mesh of the category of which a person's segmentation cuts the part in three: three segments that each lie in the
 part for the most, and each hold an eighth of it. Where several people did so, the one whose smallest segment is largest counts.
 The segments are called front, middle and rear, by their distance from the head; what remains of the part joins the nearest. All
-other labels stay. Half of the meshes, drawn at random, are to train on. Needs NumPy (Debian: python3-numpy)."""
+other labels stay. Half of the meshes, drawn at random, are to train on. Needs SciPy (Debian: python3-scipy)."""
 import argparse
 import pathlib
 import random
@@ -15,26 +15,21 @@ import sys
 
 import numpy
 
+from surfaces import DataError, face_areas, labels_path, read_labels, read_off, read_text, write_labels
+
 LEAST_SHARE, LEAST_INSIDE = 0.125, 0.6  # of the part, and of the segment's own area
 NAMES = ('front', 'middle', 'rear')
 
 
-def read_off(path):
-    numbers = path.read_text().split()
-    vertices, faces = int(numbers[1]), int(numbers[2])
-    positions = numpy.array(numbers[4:4 + 3 * vertices], float).reshape(-1, 3)
-    corners = positions[numpy.array(numbers[4 + 3 * vertices:4 + 3 * vertices + 4 * faces], int).reshape(-1, 4)[:, 1:]]
-    area = numpy.linalg.norm(numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-    return corners.mean(axis=1), area
-
-
-def read_labels(path, faces):
-    """From pairs of lines: a name, then the 1-based numbers of its faces."""
-    labels = numpy.full(faces, '', dtype=object)
-    lines = [line.strip() for line in path.read_text().splitlines() if line.strip()]
-    for name, numbers in zip(lines[::2], lines[1::2]):
-        labels[numpy.array(numbers.split(), int) - 1] = name
-    return labels
+def read_segments(path, faces):
+    """Returns the number of each face's segment."""
+    try:
+        segment = numpy.array(read_text(path).split(), int)
+    except ValueError:
+        raise DataError(path, 'has lines that are not numbers of segments') from None
+    if len(segment) != faces:
+        raise DataError(path, f'has {len(segment)} segments of faces; the mesh has {faces} faces')
+    return segment
 
 
 def pieces_of(segment, in_part, area):
@@ -47,12 +42,13 @@ def pieces_of(segment, in_part, area):
 
 def finer(mesh, segmentations, part, head):
     """Returns the labels of a mesh in the finer style, or None if nobody cut the part in three."""
-    center, area = read_off(mesh)
-    label = read_labels(mesh.with_name(mesh.stem + '_labels.txt'), len(area))
+    positions, corners = read_off(mesh)
+    center, area = positions[corners].mean(axis=1), face_areas(positions, corners)
+    label = read_labels(labels_path(mesh), len(area))
     in_part, from_head = label == part, label == head
     best, best_share = None, 0
     for path in sorted(segmentations.glob('*.seg')):
-        segment = numpy.array(path.read_text().split(), int)
+        segment = read_segments(path, len(area))
         pieces, share = pieces_of(segment, in_part, area)
         if len(pieces) == 3 and share > best_share:
             best, best_share = [in_part & (segment == number) for number in pieces], share
@@ -67,9 +63,21 @@ def finer(mesh, segmentations, part, head):
     return label
 
 
-def write_labels(path, label):
-    names = sorted(set(label) - {''})
-    path.write_text(''.join(f'{name}\n{" ".join(map(str, numpy.flatnonzero(label == name) + 1))}\n' for name in names))
+def write_style(options):
+    """Writes the labels, and which meshes train and test."""
+    options.out.mkdir(parents=True, exist_ok=True)
+    found = []
+    for mesh in sorted((options.benchmark / 'labeled' / options.category).glob('*.off')):
+        label = finer(mesh, options.benchmark / 'seg' / mesh.stem, options.part, options.head)
+        if label is not None:
+            write_labels(options.out / f'{mesh.stem}_labels.txt', label)
+            found.append(mesh)
+    if len(found) < 2:
+        raise DataError(options.benchmark, f'has fewer than two meshes of {options.category} with the {options.part} in three')
+    training = set(random.Random(1).sample(found, len(found) // 2))
+    for name, chosen in (('train', training), ('test', set(found) - training)):
+        (options.out / f'{name}.txt').write_text(''.join(f'{mesh.resolve()}\n' for mesh in sorted(chosen)))
+    print(f'{len(found)} meshes: {" ".join(mesh.stem for mesh in found)}')
 
 
 def main():
@@ -80,20 +88,10 @@ def main():
     parser.add_argument('out', type=pathlib.Path, help='folder for the labels and the lists of meshes')
     parser.add_argument('--head', default='head', help='label of the part that the front is next to')
     options = parser.parse_args()
-    meshes = sorted((options.benchmark / 'labeled' / options.category).glob('*.off'))
-    options.out.mkdir(parents=True, exist_ok=True)
-    found = []
-    for mesh in meshes:
-        label = finer(mesh, options.benchmark / 'seg' / mesh.stem, options.part, options.head)
-        if label is not None:
-            write_labels(options.out / f'{mesh.stem}_labels.txt', label)
-            found.append(mesh)
-    if len(found) < 2:
-        sys.exit(f'{options.benchmark}: nobody cut the {options.part} of {options.category} in three')
-    training = set(random.Random(1).sample(found, len(found) // 2))
-    for name, chosen in (('train', training), ('test', set(found) - training)):
-        (options.out / f'{name}.txt').write_text(''.join(f'{mesh.resolve()}\n' for mesh in sorted(chosen)))
-    print(f'{len(found)} meshes: {" ".join(mesh.stem for mesh in found)}')
+    try:
+        write_style(options)
+    except DataError as error:
+        sys.exit(f'error: {error}')
 
 
 if __name__ == '__main__':

@@ -4,7 +4,8 @@
     docs/results/label_pages.py out/sb6/report.json > docs/results/labeling_sb6.md
 
 The page holds all rates per category beside those of the thesis, the scatter of the splits, what is confused most, and the
-features that boosting chose (thesis Fig. 3.5). With --peer in the evaluation, also the other program's rates per category, and on how
+features that boosting chose (thesis Fig. 3.5). Categories that were evaluated apart, as on several machines, make one page from
+all their reports. With --peer in the evaluation, also the other program's rates per category, and on how
 many meshes it is behind; --peer-name says whose labels these are.
 """
 import argparse
@@ -101,6 +102,39 @@ def families(report):
     return table(['family'] + [stage['stage'] for stage in stages], rows)
 
 
+def sum_features(of_categories):
+    """The shares of the families in all models: per stage, the mean over the stumps."""
+    total = []
+    for number in range(max(len(stages) for stages in of_categories)):
+        stages = [stages[number] for stages in of_categories if number < len(stages)]
+        stumps = sum(stage['stumps'] for stage in stages)
+        names = sorted({family for stage in stages for family in stage['share_per_family']})
+        shares = {family: sum(stage['share_per_family'].get(family, 0) * stage['stumps'] for stage in stages) / max(stumps, 1)
+                  for family in names}
+        total.append({'stage': stages[0]['stage'], 'stumps': stumps, 'share_per_family': shares})
+    return total
+
+
+def sum_peers(peers):
+    """Counts are summed over the categories, rates averaged."""
+    counts = ('meshes', 'ahead', 'behind')
+    return {key: sum(peer[key] for peer in peers) if key in counts else mean([peer[key] for peer in peers]) for key in peers[0]}
+
+
+def merge(reports):
+    """One report of the categories of all. Raises ValueError if they do not belong together."""
+    first, categories = reports[0], [category for report in reports for category in report['categories']]
+    if any(report[key] != first[key] for report in reports for key in ('protocol', 'options')):
+        raise ValueError('the reports are of other protocols or other options')
+    names = [category['category'] for category in categories]
+    if len(set(names)) < len(names):
+        raise ValueError('two reports hold the same category')
+    merged = {**first, 'categories': categories, 'features': sum_features([c['features'] for c in categories])}
+    if peers := [category['peer'] for category in categories if 'peer' in category]:
+        merged['peer'] = sum_peers(peers)
+    return merged
+
+
 def changed_options(options):
     """The options of the training that differ from the defaults, as in the command."""
     words = ''
@@ -141,20 +175,28 @@ def page(report, peer_name):
     return '\n'.join(text)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('report', help='report.json in the --out folder of the evaluation')
-    parser.add_argument('--peer-name', default='another program', help="whose labels were the evaluation's --peer")
-    options = parser.parse_args()
-    path = options.report
+def read(path):
+    """Reads a report; ends the program with one line if the file is none."""
     try:
         with open(path, encoding='utf-8') as file:
             report = json.load(file)
         if report['protocol'] not in PROTOCOLS:
             sys.exit(f'{path}: is the report of no protocol; call `exemplar label evaluate --protocol`')
-        print(page(report, options.peer_name), end='')
+        return report
     except (OSError, KeyError, TypeError, json.JSONDecodeError) as error:
         sys.exit(f'{path}: is no report of `exemplar label evaluate` ({error!r})')
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('report', nargs='+', help='report.json in the --out folder of the evaluation, or those of its categories')
+    parser.add_argument('--peer-name', default='another program', help="whose labels were the evaluation's --peer")
+    options = parser.parse_args()
+    reports = [read(path) for path in options.report]
+    try:
+        print(page(merge(reports), options.peer_name), end='')
+    except (KeyError, TypeError, ValueError) as error:
+        sys.exit(f'{", ".join(options.report)}: cannot be made a page ({error})')
 
 
 if __name__ == '__main__':

@@ -334,12 +334,25 @@ class Evaluate(WithModel):
         changed = [mesh["without_cut"] - mesh["recognition_rate"] for split in report["categories"][0]["splits"] for mesh in split["meshes"]]
         self.assertTrue(0 < max(map(abs, changed)) < 0.2, "the cut changes some faces")
         (self.folder / "nothing").mkdir()
-        page = subprocess.run([sys.executable, "-B", DOCS / "results/label_pages.py", self.folder / "peers.json",
-                               "--peer-name", "the man next door"], capture_output=True, text=True, check=True).stdout
+        def make_page(*reports):
+            return subprocess.run([sys.executable, "-B", DOCS / "results/label_pages.py", *reports, "--peer-name",
+                                   "the man next door"], cwd=self.folder, capture_output=True, text=True, check=False)
+
+        page = make_page("peers.json").stdout
         self.assertIn("psb/labeled --rounds 8 --patience 8 --feature-fraction 0.25 --samples 60 --out out/sb19 --peer peer\n", page)
         self.assertIn("## Beside the man next door\n", page)
         for row in (r"cups( \| [\d.-]+){12}", r"cups \| 2 \| [\d.]+ \| 50.0 \|", r"\*\*mean\*\*"):
             self.assertRegex(page, rf"\| {row}")
+
+        report["categories"][0].update(category="mugs", recognition_rate=0)
+        (self.folder / "mugs.json").write_text(json.dumps(report))
+        both, half = make_page("peers.json", "mugs.json").stdout, 50 * self.json("peers.json")["recognition_rate"]
+        self.assertRegex(both, rf"\| \*\*mean\*\* \| \*\*{half:.1f}\*\* ")
+        self.assertIn("| mean | 4 |", both)
+        self.assertEqual(both.split("## Chosen")[1], page.split("## Chosen")[1], "the same models chose the same features")
+        self.assertIn("peers.json, peers.json: cannot be made a page (two reports", make_page("peers.json", "peers.json").stderr)
+        (self.folder / "other.json").write_text(json.dumps({**report, "options": {**report["options"], "rounds": 9}}))
+        self.assertIn("other options", make_page("peers.json", "other.json").stderr)
         self.refused("label", "evaluate", "--protocol", "sb19", "cups", "--out", "peers", "--peer", "nothing", *QUICK,
                      code=1, says="labels of no test mesh")
         self.refused("label", "evaluate", "--protocol", "sb19", "cups", "--out", "peers", "--peer", "nowhere", code=1,

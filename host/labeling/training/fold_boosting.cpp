@@ -17,9 +17,8 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_evaluation_interval =
-    10;                                       // after the first ten, held-out rows are evaluated every so many rounds
-constexpr std::size_t k_linear_rows = 32768;  // maximum for a linear classifier, as neighboring faces are alike
+constexpr std::size_t k_evaluation_interval = 10;     // of rounds, in the search for their number
+constexpr std::size_t k_linear_rows = 32768;          // maximum for a linear classifier, as neighboring faces are alike
 constexpr std::size_t k_max_unvalidated_rounds = 50;  // maximum if nothing can be held out
 /// Factor on the link's scale for items that the classifier was trained on, where it is overconfident.
 constexpr float k_seen_scale = 0.5F;
@@ -115,46 +114,47 @@ Booster start(const TrainingRows& pool, const QuantizedFeatures& quantized, std:
     return options.binary ? Booster::gentle(training, boost) : Booster(training, options.classes, boost);
 }
 
-void grow(Booster& booster, std::size_t rounds, const std::function<void()>& round_done) {
-    while (booster.classifier().stumps.size() < rounds) {
-        check_interrupt();
-        booster.add_stump();
-        round_done();
-    }
-}
-
-/// One classifier per fold, trained on the rows of the others; none where one side of the split has no rows.
+/// One classifier per fold, trained on the rows of the others, and one trained on all rows. None for a fold where one
+/// side of the split has no rows.
 class FoldBoosters {
   public:
     FoldBoosters(const TrainingRows& pool, const QuantizedFeatures& quantized, const FoldBoostingOptions& options)
-        : of_fold_(options.folds) {
+        : booster_(options.folds + 1) {
         for (std::size_t fold = 0; fold < options.folds; ++fold) {
             std::vector<std::uint32_t> inside;
             for (std::uint32_t row = 0; row < pool.fold.size(); ++row)
                 if (pool.fold[row] != fold) inside.push_back(row);
             if (inside.empty() || inside.size() == pool.fold.size()) continue;
-            of_fold_[fold] = start(pool, quantized, inside, options);
+            booster_[fold] = start(pool, quantized, inside, options);
         }
+        booster_.back() = start(pool, quantized, {}, options);
     }
-    /// Grows all classifiers to `rounds` rounds.
+    /// Grows all classifiers to `rounds` rounds, side by side: the loops within a round are too short for many cores.
     void grow_to(std::size_t rounds, const std::function<void()>& round_done) {
-        for (std::optional<Booster>& booster : of_fold_)
-            if (booster) grow(*booster, rounds, round_done);
+        parallel_for(booster_.size(), [&](std::size_t i) {
+            while (booster_[i] && booster_[i]->classifier().stumps.size() < rounds) {
+                check_interrupt();
+                booster_[i]->add_stump();
+                round_done();
+            }
+        });
     }
     /// Returns the classifier trained without a fold; null if there is none.
     const BoostedStumps* without(std::size_t fold) const {
-        return of_fold_[fold] ? &of_fold_[fold]->classifier() : nullptr;
+        return booster_[fold] ? &booster_[fold]->classifier() : nullptr;
     }
-    /// Returns the first rounds of all classifiers; one without classes where there is none.
-    std::vector<BoostedStumps> truncated(std::size_t rounds) const {
+    /// Returns the first rounds of the classifier trained on all rows.
+    BoostedStumps everywhere(std::size_t rounds) const { return truncate(booster_.back()->classifier(), rounds); }
+    /// Returns the first rounds of the classifiers of all folds; one without classes where there is none.
+    std::vector<BoostedStumps> of_folds(std::size_t rounds) const {
         std::vector<BoostedStumps> stumps;
-        for (const std::optional<Booster>& booster : of_fold_)
-            stumps.push_back(booster ? truncate(booster->classifier(), rounds) : BoostedStumps());
+        for (std::size_t fold = 0; fold + 1 < booster_.size(); ++fold)
+            stumps.push_back(booster_[fold] ? truncate(booster_[fold]->classifier(), rounds) : BoostedStumps());
         return stumps;
     }
 
   private:
-    std::vector<std::optional<Booster>> of_fold_;
+    std::vector<std::optional<Booster>> booster_;
 };
 
 /// Counts the rows of each label per fold. If a label occurs in one fold only, the classifier of the others cannot
@@ -197,16 +197,13 @@ class HeldOutScores {
         }
     }
 
-    void add_round(std::size_t round) {
+    /// Adds the rounds that the classifiers have grown since the last call.
+    void add_rounds(std::size_t end) {
         parallel_for(pool_.label.size(), [&](std::size_t i) {
             const BoostedStumps* classifier = boosters_.without(pool_.fold[i]);
-            if (!classifier) return;
-            const Stump& stump = classifier->stumps[round];
-            const bool above = pool_.features.column(stump.feature)[i] > stump.threshold;
-            for (std::size_t c = 0; c < classes_; ++c)
-                scores_[i * classes_ + c] += (stump.classes >> c & 1) ? (above ? stump.above : stump.below)
-                                                                      : classifier->elsewhere[round * classes_ + c];
+            for (std::size_t round = rounds_; classifier && round < end; ++round) add_round(*classifier, round, i);
         });
+        rounds_ = end;
     }
 
     Calibration judge(std::span<const Link> links) const {
@@ -217,9 +214,17 @@ class HeldOutScores {
     const std::vector<float>& weight() const { return weight_; }
 
   private:
+    void add_round(const BoostedStumps& classifier, std::size_t round, std::size_t row) {
+        const Stump& stump = classifier.stumps[round];
+        const bool above = pool_.features.column(stump.feature)[row] > stump.threshold;
+        for (std::size_t c = 0; c < classes_; ++c)
+            scores_[row * classes_ + c] += (stump.classes >> c & 1) ? (above ? stump.above : stump.below)
+                                                                    : classifier.elsewhere[round * classes_ + c];
+    }
+
     const TrainingRows& pool_;
     const FoldBoosters& boosters_;
-    std::size_t classes_;
+    std::size_t classes_, rounds_ = 0;
     std::vector<float> scores_, weight_;
 };
 
@@ -231,6 +236,15 @@ struct RoundChoice {
     std::vector<float> scores, weight;  ///< H of the held-out rows there, and their weights in the loss
 };
 
+/// Returns the number of rounds after which held-out rows are labeled next. Labeling them costs as much as some rounds,
+/// so it is done often only where the loss decides the number of rounds.
+std::size_t next_evaluation(std::size_t rounds, const FoldBoostingOptions& options) {
+    const std::size_t next = options.patience == 0 ? 2 * rounds
+                             : rounds < 10         ? rounds + 1
+                                                   : rounds + k_evaluation_interval;
+    return std::min(std::max<std::size_t>(next, 1), options.rounds);
+}
+
 /// Grows the classifiers until the held-out loss has not fallen for `patience` rounds, or to the end.
 RoundChoice choose_rounds(const TrainingRows& pool, FoldBoosters& boosters, const FoldBoostingOptions& options,
                           const std::function<void()>& round_done) {
@@ -239,10 +253,10 @@ RoundChoice choose_rounds(const TrainingRows& pool, FoldBoosters& boosters, cons
     const std::span<const Link> usable = std::span(k_links).first(options.binary ? 1 : 2);
     HeldOutScores scores(pool, boosters, options);
     RoundChoice choice;
-    for (std::size_t round = 1; round <= options.rounds; ++round) {
+    for (std::size_t round = 0; round < options.rounds;) {
+        round = next_evaluation(round, options);
         boosters.grow_to(round, round_done);
-        scores.add_round(round - 1);
-        if (round > 10 && round % k_evaluation_interval != 0 && round != options.rounds) continue;
+        scores.add_rounds(round);
         const Calibration now = scores.judge(usable);
         choice.curve.push_back({round, now.loss, now.error});
         if (options.patience == 0 || choice.rounds == 0 || now.loss < choice.calibration.loss)
@@ -252,6 +266,7 @@ RoundChoice choose_rounds(const TrainingRows& pool, FoldBoosters& boosters, cons
     }
     if (std::isnan(choice.calibration.loss))  // nothing could be held out: use few rounds
         choice.rounds = std::min(options.rounds, k_max_unvalidated_rounds), choice.curve.clear();
+    boosters.grow_to(choice.rounds, round_done);
     choice.weight = scores.weight();
     return choice;
 }
@@ -318,17 +333,14 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     quantize_options.bins = options.bins;
     const QuantizedFeatures quantized = quantize(pool.features, pool.weight, quantize_options);
     RoundChoice choice;
-    std::vector<BoostedStumps> of_fold;
+    std::vector<BoostedStumps> of_fold, all;
     {
         FoldBoosters boosters(pool, quantized, options);  // each holds a copy of its rows
         choice = choose_rounds(pool, boosters, options, round_done);
-        of_fold = boosters.truncated(choice.rounds);
+        of_fold = boosters.of_folds(choice.rounds);
+        all.push_back(boosters.everywhere(choice.rounds));
     }
-    Booster everywhere = start(pool, quantized, {}, options);
-    grow(everywhere, choice.rounds, round_done);
-
     FoldBoostingResult result;
-    std::vector<BoostedStumps> all{everywhere.classifier()};
     const FoldLabels labels(pool, options);
     for (std::size_t fold = 0; fold < of_fold.size(); ++fold) {
         const std::vector<std::uint32_t> alone = labels.of_fold_alone(fold);

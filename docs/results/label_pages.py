@@ -195,8 +195,10 @@ def main():
     reports = [read(path) for path in options.report]
     try:
         print(page(merge(reports), options.peer_name), end='')
-    except (KeyError, TypeError, ValueError) as error:
+    except ValueError as error:
         sys.exit(f'{", ".join(options.report)}: cannot be made a page ({error})')
+    except (KeyError, TypeError) as error:
+        sys.exit(f'{", ".join(options.report)}: is no report of `exemplar label evaluate` ({error!r})')
 
 
 if __name__ == '__main__':

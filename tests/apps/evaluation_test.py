@@ -334,6 +334,7 @@ class Evaluate(WithModel):
         changed = [mesh["without_cut"] - mesh["recognition_rate"] for split in report["categories"][0]["splits"] for mesh in split["meshes"]]
         self.assertTrue(0 < max(map(abs, changed)) < 0.2, "the cut changes some faces")
         (self.folder / "nothing").mkdir()
+
         def make_page(*reports):
             return subprocess.run([sys.executable, "-B", DOCS / "results/label_pages.py", *reports, "--peer-name",
                                    "the man next door"], cwd=self.folder, capture_output=True, text=True, check=False)

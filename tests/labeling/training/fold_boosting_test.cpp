@@ -54,6 +54,9 @@ TEST(FoldBoosting, KeepsAllRoundsWithoutPatience) {
     const FoldBoostingResult result = boost_with_folds(meshes.items, options, scorer, [] {});
     EXPECT_EQ(result.rounds, options.rounds);
     EXPECT_EQ(result.loss, result.curve.back().loss) << "the calibration is that of the last round";
+    std::vector<std::size_t> judged;
+    for (const HeldOutPoint& point : result.curve) judged.push_back(point.rounds);
+    EXPECT_EQ(judged, (std::vector<std::size_t>{1, 2, 4, 8, 16, 32, 64, 128, 200}));
 }
 
 TEST(FoldBoosting, ProbabilitiesAreOfTheClassifierThatNeverSawTheMesh) {
